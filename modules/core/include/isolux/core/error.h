@@ -1,0 +1,38 @@
+#pragma once
+
+#include <stdexcept>
+#include <string>
+
+namespace isolux {
+
+/// Base of everything isolux throws. The message is one line: what was given and what is allowed.
+class Error : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// A value, option, name or file content that cannot be used.
+class InvalidInput : public Error {
+ public:
+  using Error::Error;
+};
+
+/// A file that could not be opened, read or written.
+class IoError : public Error {
+ public:
+  using Error::Error;
+};
+
+/// OpenGL or a window system refused.
+class GlError : public Error {
+ public:
+  using Error::Error;
+};
+
+/// The run's stop token was triggered; nothing was written.
+class Cancelled : public Error {
+ public:
+  using Error::Error;
+};
+
+}  // namespace isolux

@@ -1,0 +1,52 @@
+#pragma once
+
+#include <isolux/core/lattice.h>
+
+#include <cassert>
+#include <span>
+#include <utility>
+#include <vector>
+
+namespace isolux {
+
+/// A lattice with one value a point, x fastest; looks at memory it does not own.
+template <class T>
+class GridView {
+ public:
+  GridView() = default;
+  GridView(const Lattice& lattice, std::span<T> values) : lattice_(lattice), values_(values) {
+    assert(values.size() == lattice.count());
+  }
+  [[nodiscard]] const Lattice& lattice() const { return lattice_; }
+  [[nodiscard]] Index3 size() const { return lattice_.size; }
+  [[nodiscard]] std::span<T> values() const { return values_; }
+  [[nodiscard]] T& operator()(int i, int j, int k) const { return values_[lattice_.offset(i, j, k)]; }
+
+ private:
+  Lattice lattice_;
+  std::span<T> values_;
+};
+
+/// The owning grid.
+template <class T>
+class Grid {
+ public:
+  Grid() = default;
+  explicit Grid(const Lattice& lattice, T value = T{}) : lattice_(lattice), values_(lattice.count(), value) {}
+  Grid(const Lattice& lattice, std::vector<T> values) : lattice_(lattice), values_(std::move(values)) {
+    assert(values_.size() == lattice.count());
+  }
+  [[nodiscard]] const Lattice& lattice() const { return lattice_; }
+  [[nodiscard]] Index3 size() const { return lattice_.size; }
+  [[nodiscard]] std::span<T> values() { return values_; }
+  [[nodiscard]] std::span<const T> values() const { return values_; }
+  [[nodiscard]] T& operator()(int i, int j, int k) { return values_[lattice_.offset(i, j, k)]; }
+  [[nodiscard]] const T& operator()(int i, int j, int k) const { return values_[lattice_.offset(i, j, k)]; }
+  [[nodiscard]] GridView<const T> view() const { return {lattice_, values_}; }
+
+ private:
+  Lattice lattice_;
+  std::vector<T> values_;
+};
+
+}  // namespace isolux

@@ -1,0 +1,46 @@
+#pragma once
+
+#include <isolux/core/vec.h>
+
+#include <cstddef>
+
+namespace isolux {
+
+/// The affine map from index space (grid points at integers) to world space.
+struct IndexToWorld {
+  Vec3 origin{0.0};  ///< world position of grid point (0,0,0)
+  Mat3 axes{1.0};    ///< axes[a]: world step from one grid point to the next on axis a (direction times spacing)
+
+  [[nodiscard]] Vec3 world(const Vec3& index) const { return origin + axes * index; }
+  [[nodiscard]] Vec3 index(const Vec3& world) const;
+  /// A covector (a gradient) from index space to world space: the inverse transpose of `axes`.
+  [[nodiscard]] Mat3 gradient_to_world() const;
+  /// Length of each axis' step, world units.
+  [[nodiscard]] Vec3 spacing() const;
+};
+
+/// A regular grid of points: sizes along x, y, z (x fastest in memory) and where they lie.
+struct Lattice {
+  Index3 size{0};
+  IndexToWorld frame;
+
+  [[nodiscard]] std::size_t count() const { return std::size_t(size.x) * std::size_t(size.y) * std::size_t(size.z); }
+  [[nodiscard]] std::size_t offset(int i, int j, int k) const {
+    return (std::size_t(k) * std::size_t(size.y) + std::size_t(j)) * std::size_t(size.x) + std::size_t(i);
+  }
+};
+
+/// `texels` texel centres spread over the box of `volume`: centre i of N lies at (i + 0.5)/N between the first and the
+/// last grid point. With n - 1 texels on each axis they are the cell centres. Texture coordinate = place in the box, 0
+/// to 1. \throw InvalidInput unless the volume has two grid points and the texture one texel on each axis.
+[[nodiscard]] Lattice cell_lattice(const Lattice& volume, Index3 texels);
+/// The same with one texel a cell.
+[[nodiscard]] Lattice cell_lattice(const Lattice& volume);
+/// Texels at the grid points themselves (the thesis); `volume` unchanged. Texture coordinate of the point at place u in
+/// the box of an axis with n points: (u (n - 1) + 0.5)/n.
+[[nodiscard]] Lattice voxel_lattice(const Lattice& volume);
+
+/// The affine map from `from`'s index space to `to`'s index space.
+[[nodiscard]] IndexToWorld index_to_index(const Lattice& from, const Lattice& to);
+
+}  // namespace isolux

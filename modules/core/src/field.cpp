@@ -1,0 +1,112 @@
+#include <isolux/core/field.h>
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+
+namespace isolux {
+
+/// The cell that holds a point and the place in it.
+struct TrilinearField::Place {
+  Index3 cell{0};
+  Vec3 fraction{0.0};
+  const float* corner = nullptr;  ///< value at the cell's first grid point
+  std::ptrdiff_t stride[3]{};     ///< from it to the neighbour on each axis
+
+  /// The corner values, x fastest.
+  void load(double (&v)[8]) const {
+    for (int q = 0; q < 8; ++q)
+      v[q] = double(corner[(q & 1) * stride[0] + (q >> 1 & 1) * stride[1] + (q >> 2) * stride[2]]);
+  }
+  [[nodiscard]] double weight(int q) const {
+    return ((q & 1) != 0 ? fraction.x : 1.0 - fraction.x) * ((q & 2) != 0 ? fraction.y : 1.0 - fraction.y) *
+           ((q & 4) != 0 ? fraction.z : 1.0 - fraction.z);
+  }
+};
+
+namespace {
+double mix(double a, double b, double t) { return a + t * (b - a); }
+}  // namespace
+
+TrilinearField::TrilinearField(const Volume& volume)
+    : lattice_(volume.lattice()),
+      data_(volume.values.values().data()),
+      gradient_to_world_(lattice_.frame.gradient_to_world()) {}
+
+TrilinearField::Place TrilinearField::place(const Vec3& index) const {
+  Place p;
+  for (int a = 0; a < 3; ++a) {
+    const double x = std::clamp(index[a], 0.0, double(lattice_.size[a] - 1));
+    p.cell[a] = std::min(int(x), lattice_.size[a] - 2);
+    p.fraction[a] = x - p.cell[a];
+  }
+  p.corner = data_ + lattice_.offset(p.cell.x, p.cell.y, p.cell.z);
+  p.stride[0] = 1;
+  p.stride[1] = lattice_.size.x;
+  p.stride[2] = std::ptrdiff_t(lattice_.size.x) * lattice_.size.y;
+  return p;
+}
+
+double TrilinearField::value(const Vec3& index) const {
+  const Place p = place(index);
+  double v[8];
+  p.load(v);
+  const Vec3& f = p.fraction;
+  return mix(mix(mix(v[0], v[1], f.x), mix(v[2], v[3], f.x), f.y), mix(mix(v[4], v[5], f.x), mix(v[6], v[7], f.x), f.y),
+             f.z);
+}
+
+Vec3 TrilinearField::cell_gradient(const Vec3& index) const {
+  const Place p = place(index);
+  double v[8];
+  p.load(v);
+  const Vec3& f = p.fraction;
+  return {mix(mix(v[1] - v[0], v[3] - v[2], f.y), mix(v[5] - v[4], v[7] - v[6], f.y), f.z),
+          mix(mix(v[2] - v[0], v[3] - v[1], f.x), mix(v[6] - v[4], v[7] - v[5], f.x), f.z),
+          mix(mix(v[4] - v[0], v[5] - v[1], f.x), mix(v[6] - v[2], v[7] - v[3], f.x), f.y)};
+}
+
+double TrilinearField::difference(int i, int j, int k, int axis) const {
+  const int at[3] = {i, j, k};
+  const std::ptrdiff_t stride[3] = {1, lattice_.size.x, std::ptrdiff_t(lattice_.size.x) * lattice_.size.y};
+  const float* here = data_ + lattice_.offset(i, j, k);
+  const bool low = at[axis] > 0;
+  const bool high = at[axis] + 1 < lattice_.size[axis];
+  const double d = double(here[high ? stride[axis] : 0]) - double(here[low ? -stride[axis] : 0]);
+  return low && high ? 0.5 * d : d;
+}
+
+Vec3 TrilinearField::smooth_gradient(const Vec3& index) const {
+  const Place p = place(index);
+  Vec3 g(0.0);
+  for (int q = 0; q < 8; ++q) {
+    const double w = p.weight(q);
+    if (w == 0.0) continue;
+    const int i = p.cell.x + (q & 1);
+    const int j = p.cell.y + (q >> 1 & 1);
+    const int k = p.cell.z + (q >> 2);
+    for (int a = 0; a < 3; ++a) g[a] += w * difference(i, j, k, a);
+  }
+  return g;
+}
+
+Vec3 TrilinearField::world_gradient(const Vec3& index, GradientKind kind) const {
+  return gradient_to_world_ * (kind == GradientKind::kCell ? cell_gradient(index) : smooth_gradient(index));
+}
+
+Vec3 TrilinearField::normal(const Vec3& index, OuterSide outer, GradientKind kind) const {
+  const Vec3 g = kind == GradientKind::kCell ? cell_gradient(index) : smooth_gradient(index);
+  double v[8];
+  place(index).load(v);
+  double magnitude = 0.0;
+  for (const double x : v) magnitude = std::max(magnitude, std::fabs(x));
+  // Normalised before the squares of glm::length can under- or overflow.
+  const double largest = std::max({std::fabs(g.x), std::fabs(g.y), std::fabs(g.z)});
+  if (!(largest > 1e-7 * magnitude)) return Vec3(0.0);
+  const Vec3 n = gradient_to_world_ * (g / largest);
+  const double length = glm::length(n);
+  if (!(length > 0.0)) return Vec3(0.0);
+  return n * ((outer == OuterSide::kLower ? -1.0 : 1.0) / length);
+}
+
+}  // namespace isolux

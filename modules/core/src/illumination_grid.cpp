@@ -1,0 +1,34 @@
+#include <isolux/core/illumination_grid.h>
+
+#include <algorithm>
+
+namespace isolux {
+
+Vec3f IlluminationGrid::at_index(const Vec3& texel_index) const {
+  int low[3];
+  int step[3];
+  double f[3];
+  for (int a = 0; a < 3; ++a) {
+    const double x = std::clamp(texel_index[a], 0.0, double(lattice.size[a] - 1));
+    low[a] = std::min(int(x), std::max(lattice.size[a] - 2, 0));
+    step[a] = lattice.size[a] > 1 ? 1 : 0;
+    f[a] = x - low[a];
+  }
+  double sum[3] = {0.0, 0.0, 0.0};
+  for (int q = 0; q < 8; ++q) {
+    const int dx = q & 1;
+    const int dy = q >> 1 & 1;
+    const int dz = q >> 2;
+    const double w = (dx != 0 ? f[0] : 1.0 - f[0]) * (dy != 0 ? f[1] : 1.0 - f[1]) * (dz != 0 ? f[2] : 1.0 - f[2]);
+    if (w == 0.0) continue;
+    const float* texel =
+        values.data() +
+        lattice.offset(low[0] + dx * step[0], low[1] + dy * step[1], low[2] + dz * step[2]) * std::size_t(channels);
+    for (int c = 0; c < 3; ++c) sum[c] += w * double(texel[channels == 3 ? c : 0]);
+  }
+  return {float(sum[0]), float(sum[1]), float(sum[2])};
+}
+
+Vec3f IlluminationGrid::at_world(const Vec3& world) const { return at_index(lattice.frame.index(world)); }
+
+}  // namespace isolux

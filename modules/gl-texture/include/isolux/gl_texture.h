@@ -1,0 +1,5 @@
+// The front page of gl-texture: the illumination grid as an OpenGL 3D texture.
+#pragma once
+
+#include <isolux/gl_texture/texture3d.h>
+#include <isolux/gl_texture/texture_uploader.h>

@@ -1,0 +1,6 @@
+// The front page of mc-extract: isosurfaces as OpenMesh half-edge meshes with smoothed vertex normals.
+#pragma once
+
+#include <isolux/mc_extract/extractor.h>
+#include <isolux/mc_extract/iso_mesh.h>
+#include <isolux/mc_extract/write_mesh.h>

@@ -1,0 +1,52 @@
+#pragma once
+
+#include <isolux/core/registry.h>
+#include <isolux/core/run.h>
+#include <isolux/core/sample_set.h>
+#include <isolux/raytrace_flat/scene.h>
+
+#include <cstdint>
+
+namespace isolux {
+
+/// Bounces until nothing is left.
+inline constexpr int kAllBounces = -1;
+
+struct TraceSettings {
+  int rays = 64;              ///< a site: directions over the hemisphere
+  int bounces = kAllBounces;  ///< reflections; 0: a hit is black unless it emits
+  GradientKind gradient = GradientKind::kCentralDifferences;
+};
+
+/// What the work was, for reports and benchmarks.
+struct TraceCounters {
+  std::uint64_t rays = 0;  ///< rays that were traced, shadow rays and bounces included
+  std::uint64_t hits = 0;
+  std::uint64_t macrocells = 0;  ///< entered
+  std::uint64_t cells = 0;       ///< tested
+  std::uint64_t cubics = 0;      ///< solved
+};
+
+struct TraceResult {
+  SampleSet samples;
+  TraceCounters counters;
+};
+
+/// The raytrace-flat stage: e = irradiance/pi at sites, every ray confined to the level set of its site. Backends are
+/// immutable and callable from many threads.
+class FlatTracer {
+ public:
+  static constexpr std::string_view kStage = "tracer";
+  virtual ~FlatTracer() = default;
+
+  /// Lights the sites: one channel if is_grey(scene), else three. Random numbers are keyed by run.seed and the site's
+  /// index: the same bits for any number of threads. \pre require_usable(volume); sites inside its box. \throw
+  /// Cancelled; InvalidInput
+  [[nodiscard]] virtual TraceResult trace(const Volume& volume, const Scene& scene, Sites sites,
+                                          const TraceSettings& settings, const Run& run) const = 0;
+};
+
+/// scalar, ...
+[[nodiscard]] Registry<FlatTracer> tracers();
+
+}  // namespace isolux

@@ -1,0 +1,83 @@
+#pragma once
+
+#include <isolux/core/field.h>
+#include <isolux/core/vec.h>
+
+#include <variant>
+#include <vector>
+
+namespace isolux {
+
+/// The same radiance from everywhere.
+struct UniformEnvironment {
+  Vec3f radiance{1.0f};
+};
+
+/// Zenith blends to horizon by the sine of the elevation above the plane of `up`; below it is ground.
+struct SkyEnvironment {
+  Vec3f up{0.0f, 0.0f, 1.0f};
+  Vec3f zenith{1.0f};
+  Vec3f horizon{1.0f};
+  Vec3f ground{0.0f};
+};
+
+/// A latitude-longitude image: row 0 towards `up`, linear radiance, RGB, x fastest. An empty image is an error.
+struct ImageEnvironment {
+  Vec3f up{0.0f, 0.0f, 1.0f};
+  int width = 0;
+  int height = 0;
+  std::vector<Vec3f> pixels;
+};
+
+using Environment = std::variant<UniformEnvironment, SkyEnvironment, ImageEnvironment>;
+
+/// Parallel light from a disc in the sky. `irradiance` is at normal incidence.
+struct SunLight {
+  Vec3f direction{0.0f, 0.0f, 1.0f};  ///< towards the sun, world space, any length
+  Vec3f irradiance{1.0f};
+  float angular_diameter_deg = 0.53f;
+};
+
+/// center +- u +- v, shining on the side of cross(u, v).
+struct RectangleLight {
+  Vec3f center{0.0f};
+  Vec3f u{1.0f, 0.0f, 0.0f};
+  Vec3f v{0.0f, 1.0f, 0.0f};
+  Vec3f radiance{1.0f};
+};
+
+struct SphereLight {
+  Vec3f center{0.0f};
+  float radius = 1.0f;
+  Vec3f radiance{1.0f};
+};
+
+using Light = std::variant<SunLight, RectangleLight, SphereLight>;
+
+/// A colour as a function of the isovalue: piecewise linear between keys, constant beyond them.
+struct IsovalueColour {
+  struct Key {
+    float isovalue;
+    Vec3f colour;
+  };
+  std::vector<Key> keys;  ///< by rising isovalue, at least one
+
+  [[nodiscard]] Vec3f at(float isovalue) const;
+};
+
+/// What lights the level sets and how they reflect. Lengths in world units.
+struct Scene {
+  Environment environment{UniformEnvironment{}};
+  std::vector<Light> lights;  ///< shine at any number of bounces, are not seen as geometry, block nothing
+  IsovalueColour albedo{{{0.0f, Vec3f(0.8f)}}};
+  IsovalueColour emission{{{0.0f, Vec3f(0.0f)}}};
+  OuterSide outer = OuterSide::kLower;
+};
+
+/// True if every colour of the scene is grey: then one channel is enough.
+[[nodiscard]] bool is_grey(const Scene& scene);
+
+/// Radiance that arrives from world direction `towards` (unit) where nothing is in the way, light sources apart.
+[[nodiscard]] Vec3f environment_radiance(const Environment& environment, const Vec3& towards);
+
+}  // namespace isolux

@@ -1,0 +1,5 @@
+// The front page of resample: scattered radiance samples become the illumination grid.
+#pragma once
+
+#include <isolux/resample/fill_unlit.h>
+#include <isolux/resample/resampler.h>

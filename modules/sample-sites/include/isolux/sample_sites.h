@@ -1,0 +1,4 @@
+// The front page of sample-sites: where in the volume light is sampled.
+#pragma once
+
+#include <isolux/sample_sites/site_sampler.h>

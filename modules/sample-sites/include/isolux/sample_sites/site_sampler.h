@@ -1,0 +1,40 @@
+#pragma once
+
+#include <isolux/core/field.h>
+#include <isolux/core/registry.h>
+#include <isolux/core/run.h>
+#include <isolux/core/sample_set.h>
+
+#include <cstddef>
+#include <optional>
+
+namespace isolux {
+
+struct SiteRequest {
+  Lattice texels;                       ///< the grid that the samples are for
+  std::size_t count = 0;                ///< sites wanted; 0: one a texel. Samplers that sit at texels ignore it
+  std::optional<ValueRange> isovalues;  ///< sites only on level sets within
+  OuterSide outer = OuterSide::kLower;
+  GradientKind gradient = GradientKind::kCentralDifferences;
+};
+
+/// The stage that chooses sites. Backends are immutable and callable from many threads.
+class SiteSampler {
+ public:
+  static constexpr std::string_view kStage = "sampler";
+  virtual ~SiteSampler() = default;
+
+  /// Sites in the box of `volume`, without those that have no normal or lie outside the isovalue range; equal for any
+  /// number of threads. \pre require_usable(volume). \throw Cancelled
+  [[nodiscard]] virtual Sites sample(const Volume& volume, const SiteRequest& request, const Run& run) const = 0;
+};
+
+/// random, stratified, low_discrepancy, texels
+[[nodiscard]] Registry<SiteSampler> samplers();
+
+/// Gives positions (index space) their isovalues and normals and drops those without a normal or outside the range: the
+/// last step of every sampler, and the way to light given points such as a mesh's vertices.
+[[nodiscard]] Sites make_sites(const Volume& volume, std::vector<Vec3f> positions, const SiteRequest& request,
+                               const Run& run);
+
+}  // namespace isolux

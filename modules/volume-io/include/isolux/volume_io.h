@@ -1,0 +1,9 @@
+// The front page of volume-io: volumes and light from and to files.
+#pragma once
+
+#include <isolux/core/registry.h>
+#include <isolux/volume_io/atomic_file.h>
+#include <isolux/volume_io/light_file.h>
+#include <isolux/volume_io/read.h>
+#include <isolux/volume_io/volume_reader.h>
+#include <isolux/volume_io/write.h>

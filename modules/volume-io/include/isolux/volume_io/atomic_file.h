@@ -1,0 +1,17 @@
+#pragma once
+
+#include <functional>
+#include <ostream>
+#include <string>
+
+namespace isolux {
+
+/// Lets `write` fill a temporary file in the folder of `path`, then renames it to `path`: a reader never sees half a
+/// file, and nothing is left if anything throws. \throw IoError naming path; whatever write throws.
+void write_atomically(const std::string& path, const std::function<void(std::ostream&)>& write);
+
+/// The same for a library that wants a file name: `write` gets the temporary's path, which keeps the extension of
+/// `path`.
+void write_atomically_by_name(const std::string& path, const std::function<void(const std::string& temporary)>& write);
+
+}  // namespace isolux

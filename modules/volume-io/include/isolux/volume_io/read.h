@@ -1,0 +1,19 @@
+#pragma once
+
+#include <isolux/volume_io/volume_reader.h>
+
+namespace isolux {
+
+/// Reads a volume argument: `gen:NAME[:N]`, a file told by content and then by extension, or a folder of DICOM slices;
+/// with whichever reader of `registry` claims it most surely. `run.seed` seeds `gen:noise`. \throw IoError,
+/// InvalidInput as VolumeReader::read; InvalidInput naming the known formats if nobody claims it.
+[[nodiscard]] Volume read_volume(const std::string& source, const ReadOptions& options, const Run& run,
+                                 const Registry<VolumeReader>& registry);
+/// With the readers of this build.
+[[nodiscard]] Volume read_volume(const std::string& source, const ReadOptions& options = {}, const Run& run = {});
+
+/// SHA-256 over size, frame and float values (little endian): what ties a light file to its volume, in lower-case
+/// hexadecimal.
+[[nodiscard]] std::string volume_sha256(const Volume& volume);
+
+}  // namespace isolux

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <isolux/core/registry.h>
+#include <isolux/core/run.h>
+#include <isolux/core/volume.h>
+
+#include <optional>
+#include <string>
+
+namespace isolux {
+
+/// What a headerless file cannot say of itself.
+struct RawLayout {
+  Index3 size{0};
+  ScalarType type = ScalarType::kUint8;
+  bool big_endian = false;
+};
+
+/// How to read a volume.
+struct ReadOptions {
+  std::optional<RawLayout> raw;      ///< dims, type and endianness of a headerless file
+  std::optional<Vec3> spacing;       ///< replaces the file's spacing, world units; needed where a format has none
+  bool allow_external_data = false;  ///< a header may name a data file outside its own folder
+};
+
+/// The volume-io stage: reads one family of formats. Backends are immutable and callable from many threads.
+class VolumeReader {
+ public:
+  static constexpr std::string_view kStage = "reader";
+  virtual ~VolumeReader() = default;
+
+  /// How sure this reader is that `source` (a path, or `gen:` text) is of its kind: 0 not at all, 1 by its name, 2 by
+  /// its content.
+  [[nodiscard]] virtual int claims(const std::string& source, const ReadOptions& options) const = 0;
+  /// Reads it all, converted to float. Voxels may be NaN or infinite and axes 1 wide, as in the file: see
+  /// require_usable(). \throw IoError if it cannot be opened or is shorter than its header says; InvalidInput for a
+  /// header that makes no sense or asks for what is not supported. Every message names the file.
+  [[nodiscard]] virtual Volume read(const std::string& source, const ReadOptions& options, const Run& run) const = 0;
+};
+
+/// raw, nrrd, analytic, and itk where it was built.
+[[nodiscard]] Registry<VolumeReader> readers();
+
+}  // namespace isolux

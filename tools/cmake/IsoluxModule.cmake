@@ -1,0 +1,229 @@
+# One call per module. A module builds, tests and benches alone (cmake -S modules/NAME -B DIR) or as a member of the workspace.
+#
+#   isolux_module(NAME [STAGE Stage CATALOGUE function [DEFAULT key]]
+#                 [DEPENDS modules...]              # ours, public
+#                 [PUBLIC_PACKAGES packages...]     # seen in our public headers
+#                 [PACKAGES packages...]            # used in .cpp files only
+#                 [BACKEND_PACKAGES key:Package...] # a backend that is left out, with a word, where its package is missing
+#                 [TEST_PACKAGES packages...] [BENCH_PACKAGES packages...])
+#
+# Sources are src/*.cpp; each file of src/backends is one backend: its key is its file name, and the generated catalogue calls
+# its isolux::backends::KEY(Registry<Stage>&). tests/*.cpp become one GoogleTest program, each benches/*.cpp and examples/*.cpp
+# a program of its own.
+include_guard(GLOBAL)
+include(${CMAKE_CURRENT_LIST_DIR}/IsoluxPackages.cmake)
+include(GNUInstallDirs)
+get_filename_component(ISOLUX_ROOT ${CMAKE_CURRENT_LIST_DIR}/../.. ABSOLUTE)
+
+set(ISOLUX_VERSION 0.1.0)
+option(ISOLUX_TESTS "Build the tests" ON)
+option(ISOLUX_BENCHES "Build the kernel benchmarks" OFF)
+option(ISOLUX_EXAMPLES "Build the examples of the modules' READMEs" ON)
+option(ISOLUX_WERROR "Treat warnings as errors" OFF)
+set(ISOLUX_SANITIZE "" CACHE STRING "Sanitizers, such as address,undefined or thread")
+set(ISOLUX_WITHOUT "" CACHE STRING "Packages to do without even where they are installed, such as CGAL;ITK")
+
+set(CMAKE_CXX_STANDARD 20)
+set(CMAKE_CXX_STANDARD_REQUIRED ON)
+set(CMAKE_CXX_EXTENSIONS OFF)
+set(CMAKE_POSITION_INDEPENDENT_CODE ON)
+set(CMAKE_VERIFY_INTERFACE_HEADER_SETS ON)
+set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
+if(NOT CMAKE_BUILD_TYPE AND NOT CMAKE_CONFIGURATION_TYPES)
+  set(CMAKE_BUILD_TYPE Release CACHE STRING "" FORCE)
+endif()
+if(CMAKE_BUILD_TYPE STREQUAL "Release")
+  set(CMAKE_CXX_FLAGS_RELEASE "-O3 -DNDEBUG")
+endif()
+
+if(ISOLUX_TESTS)
+  find_package(GTest REQUIRED)
+  include(GoogleTest)
+  enable_testing()
+endif()
+if(ISOLUX_BENCHES)
+  find_package(benchmark REQUIRED)
+endif()
+
+# Flags shared by everything of ours, tests and applications included.
+function(isolux_flags target)
+  target_compile_options(${target} PRIVATE
+    -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor -Woverloaded-virtual -Wcast-qual -Wundef -Wimplicit-fallthrough
+    $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict>  # GCC 12: false positive on "x" + std::string
+    -ffp-contract=off                        # the same bits with and without FMA instructions
+    $<$<BOOL:${ISOLUX_WERROR}>:-Werror>)
+  if(ISOLUX_SANITIZE)
+    target_compile_options(${target} PRIVATE -fsanitize=${ISOLUX_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer)
+    target_link_options(${target} PRIVATE -fsanitize=${ISOLUX_SANITIZE})
+  endif()
+endfunction()
+
+# Links packages; missing ones end the configuration with the Debian package's name left to the README.
+function(isolux_link target visibility)
+  foreach(package IN LISTS ARGN)
+    isolux_find_package(${package} found)
+    if(NOT found)
+      message(FATAL_ERROR "${target} needs the package ${package}; see tools/packages.txt")
+    endif()
+    target_link_libraries(${target} ${visibility} ${found})
+  endforeach()
+endfunction()
+
+# Module names have hyphens as their folders do; targets and C++ names have underscores.
+function(isolux_need_module name)
+  string(REPLACE "-" "_" id ${name})
+  if(NOT TARGET isolux_${id})
+    add_subdirectory(${ISOLUX_ROOT}/modules/${name} ${CMAKE_BINARY_DIR}/modules/${name})
+  endif()
+endfunction()
+
+# Writes the function that fills a registry: one call per file of src/backends.
+function(_isolux_catalogue name id stage catalogue default optional out_sources out_packages)
+  file(GLOB files CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/src/backends/*.cpp)
+  list(SORT files)
+  set(declarations "")
+  set(calls "")
+  set(sources "")
+  set(packages "")
+  foreach(file IN LISTS files)
+    get_filename_component(key ${file} NAME_WE)
+    set(missing "")
+    foreach(pair IN LISTS optional)
+      string(REPLACE ":" ";" parts ${pair})
+      list(GET parts 0 pair_key)
+      list(GET parts 1 package)
+      if(pair_key STREQUAL key)
+        if(package IN_LIST ISOLUX_WITHOUT)
+          set(missing "switched off: ${package} is in ISOLUX_WITHOUT")
+        else()
+          isolux_find_package(${package} found)
+          if(found)
+            list(APPEND packages ${package})
+          else()
+            set(missing "package ${package} was not found when isolux was built")
+          endif()
+        endif()
+      endif()
+    endforeach()
+    if(missing)
+      string(APPEND calls "  registry.add_unavailable(\"${key}\", \"${missing}\");\n")
+    else()
+      list(APPEND sources ${file})
+      string(APPEND declarations "void ${key}(Registry<${stage}>& registry);\n")
+      string(APPEND calls "  backends::${key}(registry);\n")
+    endif()
+  endforeach()
+  set(generated ${CMAKE_CURRENT_BINARY_DIR}/catalogue.cpp)
+  file(CONFIGURE OUTPUT ${generated} @ONLY CONTENT
+"// Generated by isolux_module() from the files of src/backends.
+#include <isolux/@id@.h>
+
+namespace isolux {
+namespace backends {
+@declarations@}  // namespace backends
+
+Registry<@stage@> @catalogue@() {
+  Registry<@stage@> registry;
+@calls@  registry.set_default(\"@default@\");
+  return registry;
+}
+
+}  // namespace isolux
+")
+  set(${out_sources} ${sources} ${generated} PARENT_SCOPE)
+  set(${out_packages} ${packages} PARENT_SCOPE)
+endfunction()
+
+function(isolux_module name)
+  cmake_parse_arguments(M "" "STAGE;CATALOGUE;DEFAULT"
+    "DEPENDS;PUBLIC_PACKAGES;PACKAGES;BACKEND_PACKAGES;TEST_PACKAGES;BENCH_PACKAGES" ${ARGN})
+  if(M_UNPARSED_ARGUMENTS)
+    message(FATAL_ERROR "isolux_module(${name}): unknown arguments ${M_UNPARSED_ARGUMENTS}")
+  endif()
+  string(REPLACE "-" "_" id ${name})
+  foreach(module IN LISTS M_DEPENDS)
+    isolux_need_module(${module})
+  endforeach()
+
+  file(GLOB sources CONFIGURE_DEPENDS src/*.cpp)
+  set(backend_packages "")
+  if(M_STAGE)
+    _isolux_catalogue(${name} ${id} ${M_STAGE} ${M_CATALOGUE} "${M_DEFAULT}" "${M_BACKEND_PACKAGES}"
+      backend_sources backend_packages)
+    list(APPEND sources ${backend_sources})
+  endif()
+  file(GLOB_RECURSE headers CONFIGURE_DEPENDS include/*.h)
+  set(lib isolux_${id})
+  add_library(${lib} STATIC ${sources})
+  add_library(isolux::${id} ALIAS ${lib})
+  set_target_properties(${lib} PROPERTIES EXPORT_NAME ${id})
+  target_sources(${lib} PUBLIC FILE_SET HEADERS BASE_DIRS include FILES ${headers})
+  target_include_directories(${lib} PRIVATE src)
+  target_compile_features(${lib} PUBLIC cxx_std_20)
+  isolux_flags(${lib})
+  isolux_link(${lib} PUBLIC ${M_PUBLIC_PACKAGES})
+  isolux_link(${lib} PRIVATE ${M_PACKAGES} ${backend_packages})
+  foreach(module IN LISTS M_DEPENDS)
+    string(REPLACE "-" "_" dep ${module})
+    target_link_libraries(${lib} PUBLIC isolux::${dep})
+  endforeach()
+
+  # A module's tests, benches and examples are built where it is configured alone, and all modules' in the workspace.
+  if(PROJECT_IS_TOP_LEVEL OR ISOLUX_WORKSPACE)
+    _isolux_programs(${name} ${id} "${M_TEST_PACKAGES}" "${M_BENCH_PACKAGES}")
+  endif()
+  _isolux_install(${name} ${id} "${M_DEPENDS}" "${M_PUBLIC_PACKAGES};${M_PACKAGES};${backend_packages}")
+endfunction()
+
+function(_isolux_programs name id test_packages bench_packages)
+  file(GLOB tests CONFIGURE_DEPENDS tests/*.cpp)
+  if(ISOLUX_TESTS AND tests)
+    set(program isolux_${id}_tests)
+    add_executable(${program} ${tests})
+    target_include_directories(${program} PRIVATE src tests ${ISOLUX_ROOT}/tests/support)
+    target_link_libraries(${program} PRIVATE isolux::${id} GTest::gtest_main GTest::gmock)
+    isolux_flags(${program})
+    isolux_link(${program} PRIVATE ${test_packages})
+    gtest_discover_tests(${program} DISCOVERY_TIMEOUT 60 PROPERTIES TIMEOUT 600)
+  endif()
+  if(ISOLUX_BENCHES)
+    file(GLOB benches CONFIGURE_DEPENDS benches/*.cpp)
+    foreach(bench IN LISTS benches)
+      get_filename_component(stem ${bench} NAME_WE)
+      add_executable(bench_${id}_${stem} ${bench})
+      target_include_directories(bench_${id}_${stem} PRIVATE src ${ISOLUX_ROOT}/tests/support)
+      target_link_libraries(bench_${id}_${stem} PRIVATE isolux::${id} benchmark::benchmark_main)
+      isolux_flags(bench_${id}_${stem})
+      isolux_link(bench_${id}_${stem} PRIVATE ${bench_packages})
+    endforeach()
+  endif()
+  if(ISOLUX_EXAMPLES)
+    file(GLOB examples CONFIGURE_DEPENDS examples/*.cpp)
+    foreach(example IN LISTS examples)
+      get_filename_component(stem ${example} NAME_WE)
+      add_executable(example_${id}_${stem} ${example})
+      target_link_libraries(example_${id}_${stem} PRIVATE isolux::${id})
+      isolux_flags(example_${id}_${stem})
+      if(ISOLUX_TESTS)
+        add_test(NAME Example.${id}.${stem} COMMAND example_${id}_${stem})
+      endif()
+    endforeach()
+  endif()
+endfunction()
+
+# Each module is a component of the package: its targets file, and a list of what must be found before it is read.
+function(_isolux_install name id depends packages)
+  set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/isolux)
+  install(TARGETS isolux_${id} EXPORT isolux-${id} ARCHIVE COMPONENT ${name} FILE_SET HEADERS COMPONENT ${name})
+  install(EXPORT isolux-${id} NAMESPACE isolux:: FILE isolux-${id}-targets.cmake DESTINATION ${package_dir} COMPONENT ${name})
+  string(REPLACE "-" "_" depends "${depends}")
+  set(needs ${CMAKE_CURRENT_BINARY_DIR}/isolux-${id}-needs.cmake)
+  file(CONFIGURE OUTPUT ${needs} @ONLY CONTENT "set(isolux_needs_modules \"@depends@\")\nset(isolux_needs_packages \"@packages@\")\n")
+  set(config ${CMAKE_CURRENT_BINARY_DIR}/isolux-config.cmake)
+  configure_file(${ISOLUX_ROOT}/tools/cmake/isolux-config.cmake.in ${config} @ONLY)
+  include(CMakePackageConfigHelpers)
+  write_basic_package_version_file(${CMAKE_CURRENT_BINARY_DIR}/isolux-config-version.cmake
+    VERSION ${ISOLUX_VERSION} COMPATIBILITY SameMinorVersion)
+  install(FILES ${needs} ${config} ${CMAKE_CURRENT_BINARY_DIR}/isolux-config-version.cmake
+    ${ISOLUX_ROOT}/tools/cmake/IsoluxPackages.cmake DESTINATION ${package_dir} COMPONENT ${name})
+endfunction()
