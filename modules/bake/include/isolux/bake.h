@@ -1,0 +1,8 @@
+// The front page of bake: sites, trace and resample composed into one call, through the registries.
+#pragma once
+
+#include <isolux/bake/bake.h>
+#include <isolux/bake/light_metadata.h>
+#include <isolux/bake/light_points.h>
+#include <isolux/bake/scene_file.h>
+#include <isolux/bake/stages.h>

@@ -1,0 +1,51 @@
+#pragma once
+
+#include <isolux/bake/stages.h>
+
+#include <map>
+#include <optional>
+#include <string>
+
+namespace isolux {
+
+/// A stage's backend by name ("" for the default) and its options.
+struct BackendChoice {
+  std::string name;
+  Settings settings;
+};
+
+/// Where the texels of the illumination grid sit.
+enum class TexelLattice {
+  kCells,  ///< spread evenly over the box; one a cell by default
+  kVoxels  ///< at the grid points, as in Challis 2010
+};
+
+struct BakeSettings {
+  BackendChoice sampler;
+  BackendChoice tracer;
+  BackendChoice resampler;
+  TraceSettings trace;
+  TexelLattice lattice = TexelLattice::kCells;
+  std::optional<Index3> texels;          ///< of kCells only; default one a cell
+  std::size_t samples = 0;               ///< sites of scattering samplers; 0: one a texel
+  std::optional<ValueRange> isovalues;   ///< light only these level sets
+};
+
+struct BakeResult {
+  IlluminationGrid light;
+  TraceCounters counters;
+  std::size_t sites = 0;
+  std::size_t unlit_texels = 0;           ///< filled from their lit neighbours
+  double rmse_estimate = 0.0;             ///< root mean squared standard error of e over the sites
+  std::map<std::string, double> seconds;  ///< by stage: sites, trace, resample
+};
+
+/// Lights all level sets of a volume at once. The same bits for any number of threads.
+/// \throw InvalidInput if the volume is not usable, is constant, no site is found, or a backend or option is unknown; Cancelled.
+[[nodiscard]] BakeResult bake(const Volume& volume, const Scene& scene, const BakeSettings& settings, const Stages& stages,
+                              const Run& run);
+
+/// The texel lattice that bake() uses for these settings. \throw InvalidInput
+[[nodiscard]] Lattice texel_lattice(const Lattice& volume, const BakeSettings& settings);
+
+}  // namespace isolux

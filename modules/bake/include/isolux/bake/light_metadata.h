@@ -1,0 +1,25 @@
+#pragma once
+
+#include <isolux/bake/bake.h>
+#include <isolux/volume_io/light_file.h>
+
+namespace isolux {
+
+/// The bake's result as a file: grid and the key/value pairs isolux.version, .quantity, .scene, .settings, .volume_sha256,
+/// .iso_range and .rmse_estimate.
+[[nodiscard]] LightFile make_light_file(BakeResult result, const Volume& volume, const Scene& scene, const BakeSettings& settings,
+                                        const Run& run);
+
+/// The settings as one line of JSON.
+[[nodiscard]] std::string settings_to_json(const BakeSettings& settings, const Run& run);
+
+/// \throw InvalidInput unless the light was baked for this volume; it names both.
+void require_light_of(const LightFile& light, const Volume& volume, const std::string& light_path);
+
+/// The albedo that the light's scene gives this isovalue; 0.8 where the file says nothing.
+[[nodiscard]] Vec3f light_albedo(const LightFile& light, float isovalue);
+
+/// The outer side that the light was baked for.
+[[nodiscard]] OuterSide light_outer(const LightFile& light);
+
+}  // namespace isolux

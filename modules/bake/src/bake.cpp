@@ -1,0 +1,86 @@
+#include <fmt/format.h>
+#include <isolux/bake/bake.h>
+#include <isolux/core/error.h>
+#include <isolux/resample/fill_unlit.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <utility>
+
+namespace isolux {
+namespace {
+
+/// Seconds since it was made.
+class Stopwatch {
+ public:
+  [[nodiscard]] double seconds() const {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+  }
+
+ private:
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
+
+void require_range(const Volume& volume, const std::optional<ValueRange>& wanted) {
+  const ValueRange range = value_range(volume);
+  if (range.low == range.high) {
+    throw InvalidInput(fmt::format("{}: every voxel is {}; a constant volume has no level set to light", volume.name, range.low));
+  }
+  if (wanted && (wanted->high < range.low || wanted->low > range.high)) {
+    throw InvalidInput(fmt::format("isovalue range {}:{}: the values of {} go from {} to {}", wanted->low, wanted->high, volume.name,
+                                   range.low, range.high));
+  }
+}
+
+}  // namespace
+
+Lattice texel_lattice(const Lattice& volume, const BakeSettings& settings) {
+  if (settings.lattice == TexelLattice::kVoxels) {
+    if (settings.texels && *settings.texels != volume.size) {
+      throw InvalidInput(fmt::format("{}x{}x{} texels at the voxels: the volume has {}x{}x{} of them", settings.texels->x,
+                                     settings.texels->y, settings.texels->z, volume.size.x, volume.size.y, volume.size.z));
+    }
+    return voxel_lattice(volume);
+  }
+  return settings.texels ? cell_lattice(volume, *settings.texels) : cell_lattice(volume);
+}
+
+BakeResult bake(const Volume& volume, const Scene& scene, const BakeSettings& settings, const Stages& stages, const Run& run) {
+  require_usable(volume);
+  require_range(volume, settings.isovalues);
+  const auto sampler = stages.samplers.create(settings.sampler.name, settings.sampler.settings);
+  const auto tracer = stages.tracers.create(settings.tracer.name, settings.tracer.settings);
+  const auto resampler = stages.resamplers.create(settings.resampler.name, settings.resampler.settings);
+  const Lattice texels = texel_lattice(volume.lattice(), settings);
+
+  BakeResult result;
+  const Stopwatch sites_watch;
+  Sites sites = sampler->sample(volume,
+                                {.texels = texels,
+                                 .count = settings.samples,
+                                 .isovalues = settings.isovalues,
+                                 .outer = scene.outer,
+                                 .gradient = settings.trace.gradient},
+                                run);
+  result.seconds["sites"] = sites_watch.seconds();
+  result.sites = sites.size();
+  if (result.sites == 0) throw InvalidInput(fmt::format("{}: no site has a normal and an isovalue in the range", volume.name));
+
+  const Stopwatch trace_watch;
+  TraceResult traced = tracer->trace(volume, scene, std::move(sites), settings.trace, run);
+  result.seconds["trace"] = trace_watch.seconds();
+  result.counters = traced.counters;
+  double variance = 0.0;
+  for (const float v : traced.samples.variance) variance += double(v);
+  result.rmse_estimate = std::sqrt(variance / double(result.sites));
+
+  const Stopwatch resample_watch;
+  ResampledGrid partial = resampler->resample(volume, traced.samples, texels, run);
+  result.unlit_texels = std::size_t(std::count(partial.lit.begin(), partial.lit.end(), std::uint8_t(0)));
+  result.light = fill_unlit(std::move(partial), run);
+  result.seconds["resample"] = resample_watch.seconds();
+  return result;
+}
+
+}  // namespace isolux

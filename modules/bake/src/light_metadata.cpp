@@ -1,0 +1,83 @@
+#include <fmt/format.h>
+#include <isolux/bake/light_metadata.h>
+#include <isolux/bake/scene_file.h>
+#include <isolux/bake/version.h>
+#include <isolux/core/error.h>
+#include <isolux/volume_io/read.h>
+
+#include <nlohmann/json.hpp>
+#include <optional>
+
+namespace isolux {
+namespace {
+
+nlohmann::json choice_to_json(const BackendChoice& choice) {
+  nlohmann::json json{{"name", choice.name}};
+  for (const auto& [key, value] : choice.settings) json["set"][key] = value;
+  return json;
+}
+
+/// The scene in the light's header; nothing if there is none, as in a light that somebody else made.
+std::optional<Scene> scene_of(const LightFile& light) {
+  const auto it = light.metadata.find("isolux.scene");
+  if (it == light.metadata.end()) return std::nullopt;
+  // An image environment is described, not repeated: what shading needs is the albedo and the outer side.
+  auto json = nlohmann::json::parse(it->second, nullptr, false);
+  if (json.is_discarded() || !json.is_object()) throw InvalidInput("the light's isolux.scene is not a JSON object");
+  json.erase("environment");
+  return parse_scene(json.dump(), "", "isolux.scene of the light");
+}
+
+}  // namespace
+
+std::string settings_to_json(const BakeSettings& settings, const Run& run) {
+  nlohmann::json json{{"sampler", choice_to_json(settings.sampler)},
+                      {"tracer", choice_to_json(settings.tracer)},
+                      {"resampler", choice_to_json(settings.resampler)},
+                      {"rays", settings.trace.rays},
+                      {"lattice", settings.lattice == TexelLattice::kCells ? "cells" : "voxels"},
+                      {"seed", run.seed}};
+  if (settings.trace.bounces == kAllBounces) {
+    json["bounces"] = "all";
+  } else {
+    json["bounces"] = settings.trace.bounces;
+  }
+  json["gradient"] = settings.trace.gradient == GradientKind::kCell ? "cell" : "central_differences";
+  if (settings.samples != 0) json["samples"] = settings.samples;
+  if (settings.texels) json["texels"] = {settings.texels->x, settings.texels->y, settings.texels->z};
+  if (settings.isovalues) json["iso_range"] = {settings.isovalues->low, settings.isovalues->high};
+  return json.dump();
+}
+
+LightFile make_light_file(BakeResult result, const Volume& volume, const Scene& scene, const BakeSettings& settings, const Run& run) {
+  const ValueRange range = settings.isovalues.value_or(value_range(volume));
+  LightFile light;
+  light.metadata = {{"isolux.version", kVersion},
+                    {"isolux.quantity", "irradiance/pi"},
+                    {"isolux.scene", scene_to_json(scene)},
+                    {"isolux.settings", settings_to_json(settings, run)},
+                    {"isolux.volume_sha256", volume_sha256(volume)},
+                    {"isolux.iso_range", fmt::format("{}:{}", range.low, range.high)},
+                    {"isolux.rmse_estimate", fmt::format("{:.6g}", result.rmse_estimate)}};
+  light.grid = std::move(result.light);
+  return light;
+}
+
+void require_light_of(const LightFile& light, const Volume& volume, const std::string& light_path) {
+  const auto it = light.metadata.find("isolux.volume_sha256");
+  if (it == light.metadata.end()) {
+    throw InvalidInput(fmt::format("{}: it does not say which volume it lights (no isolux.volume_sha256); --force uses it all the same",
+                                   light_path));
+  }
+  const std::string here = volume_sha256(volume);
+  if (it->second != here) {
+    throw InvalidInput(fmt::format("{}: it lights another volume (sha256 {}...) than {} ({}...); --force uses it all the same",
+                                   light_path, it->second.substr(0, 12), volume.name, here.substr(0, 12)));
+  }
+}
+
+Vec3f light_albedo(const LightFile& light, float isovalue) { return scene_of(light).value_or(Scene{}).albedo.at(isovalue); }
+
+OuterSide light_outer(const LightFile& light) { return scene_of(light).value_or(Scene{}).outer; }
+
+}  // namespace isolux

@@ -1,0 +1,41 @@
+#include <isolux/bake/light_points.h>
+
+#include <cmath>
+#include <utility>
+
+namespace isolux {
+
+PointLight light_points(const Volume& volume, const Scene& scene, std::span<const Vec3f> world_positions,
+                        const TraceSettings& settings, const BackendChoice& tracer, const Stages& stages, const Run& run) {
+  require_usable(volume);
+  const auto backend = stages.tracers.create(tracer.name, tracer.settings);
+  const TrilinearField field(volume);
+  Sites sites;
+  std::vector<std::size_t> point_of_site;
+  for (std::size_t i = 0; i < world_positions.size(); ++i) {
+    const Vec3f position(volume.lattice().frame.index(Vec3(world_positions[i])));
+    const Vec3 normal = field.normal(Vec3(position), scene.outer, settings.gradient);
+    if (normal == Vec3(0.0)) continue;
+    sites.positions.push_back(position);
+    sites.isovalues.push_back(float(field.value(Vec3(position))));
+    sites.normals.emplace_back(normal);
+    point_of_site.push_back(i);
+  }
+  PointLight light;
+  light.radiance.assign(world_positions.size(), Vec3f(0.0f));
+  if (point_of_site.empty()) return light;
+  const TraceResult traced = backend->trace(volume, scene, std::move(sites), settings, run);
+  light.counters = traced.counters;
+  double variance = 0.0;
+  const auto channels = std::size_t(traced.samples.channels);
+  for (std::size_t s = 0; s < point_of_site.size(); ++s) {
+    for (std::size_t c = 0; c < 3; ++c) {
+      light.radiance[point_of_site[s]][int(c)] = traced.samples.radiance[s * channels + (channels == 3 ? c : 0)];
+    }
+    variance += double(traced.samples.variance[s]);
+  }
+  light.rmse_estimate = std::sqrt(variance / double(point_of_site.size()));
+  return light;
+}
+
+}  // namespace isolux
