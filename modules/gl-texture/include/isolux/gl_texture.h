@@ -2,4 +2,5 @@
 #pragma once
 
 #include <isolux/gl_texture/texture3d.h>
+#include <isolux/gl_texture/texture_mapping.h>
 #include <isolux/gl_texture/texture_uploader.h>

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <isolux/core/vec.h>
+#include <isolux/gl_texture/texture_mapping.h>
 
 namespace isolux {
 
@@ -9,25 +10,31 @@ namespace isolux {
 class Texture3D {
  public:
   Texture3D() = default;
-  Texture3D(unsigned int name, Index3 size, int channels, Vec3 scale, Vec3 offset);
+  /// Takes over the texture called `name`.
+  Texture3D(unsigned int name, Index3 size, int channels, const TextureMapping& mapping, double gain = 1.0);
   Texture3D(Texture3D&& other) noexcept;
   Texture3D& operator=(Texture3D&& other) noexcept;
+  Texture3D(const Texture3D&) = delete;
+  Texture3D& operator=(const Texture3D&) = delete;
   ~Texture3D();
 
+  /// 0 for none.
   [[nodiscard]] unsigned int name() const { return name_; }
   [[nodiscard]] Index3 size() const { return size_; }
+  /// 1 (the shader reads r) or 3.
   [[nodiscard]] int channels() const { return channels_; }
-  /// Texture coordinate = scale * place + offset, where place is 0 at the volume's first grid point and 1 at its last.
-  /// Identity for texels at cell centres; the half-texel correction for texels at the voxels.
-  [[nodiscard]] Vec3 scale() const { return scale_; }
-  [[nodiscard]] Vec3 offset() const { return offset_; }
+  /// Texture coordinate = scale * place + offset, see TextureMapping.
+  [[nodiscard]] Vec3 scale() const { return mapping_.scale; }
+  [[nodiscard]] Vec3 offset() const { return mapping_.offset; }
+  /// e = gain * what the shader reads: 1 unless the light goes beyond what the format can hold.
+  [[nodiscard]] double gain() const { return gain_; }
 
  private:
   unsigned int name_ = 0;
   Index3 size_{0};
   int channels_ = 0;
-  Vec3 scale_{1.0};
-  Vec3 offset_{0.0};
+  TextureMapping mapping_;
+  double gain_ = 1.0;
 };
 
 }  // namespace isolux

@@ -1,0 +1,199 @@
+#include <epoxy/gl.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <isolux/core/error.h>
+#include <isolux/core/random.h>
+#include <isolux/gl_texture.h>
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+#include "egl_context.h"
+#include "gl_sampler.h"
+
+namespace isolux {
+namespace {
+
+Lattice unit_spacing(Index3 size) { return {.size = size, .frame = {}}; }
+
+struct Case {
+  std::string backend;
+  std::string format;
+  int channels;
+};
+
+/// Largest error of storing e in [0, 1] in a format: half a step of 1/255, 2^-11 relative, or none.
+double storage_error(const std::string& format) {
+  if (format == "unorm8") return 0.5 / 255.0 + 1e-6;
+  return format == "float16" ? 0x1p-12 : 0.0;
+}
+
+/// Largest error of what a shader reads from such texels: bytes may be rounded after each of the three interpolations.
+double read_error(const std::string& format) {
+  return format == "unorm8" ? 4 * 0.5 / 255.0 : 2.0 * storage_error(format);
+}
+
+std::vector<Case> cases() {
+  std::vector<Case> result;
+  const Registry<TextureUploader> registry = uploaders();
+  for (const BackendInfo& info : registry.backends())
+    for (const char* format : {"unorm8", "float16", "float32"})
+      for (const int channels : {1, 3}) result.push_back({info.name, format, channels});
+  return result;
+}
+
+class Uploader : public testing::TestWithParam<Case> {
+ protected:
+  void SetUp() override {
+    if (!context_) GTEST_SKIP() << context_.why();
+    uploader_ = uploaders().create(GetParam().backend, {{"format", GetParam().format}});
+  }
+  [[nodiscard]] int channels() const { return GetParam().channels; }
+  [[nodiscard]] double storage() const { return storage_error(GetParam().format); }
+  [[nodiscard]] double reading() const { return read_error(GetParam().format); }
+
+  test::EglContext context_;
+  std::unique_ptr<TextureUploader> uploader_;
+};
+
+TEST_P(Uploader, ReadsBackWhatWasUploaded) {
+  // Odd sizes: rows of 3 and 15 bytes are what a wrong unpack alignment breaks.
+  IlluminationGrid light(unit_spacing({5, 3, 7}), channels());
+  RandomStream random(1, 2);
+  for (float& e : light.values) e = random.uniform_float();
+  const Texture3D texture = uploader_->upload(light, light.lattice);
+  EXPECT_EQ(texture.channels(), channels());
+  EXPECT_EQ(texture.gain(), 1.0);
+  std::vector<float> back(light.values.size());
+  glPixelStorei(GL_PACK_ALIGNMENT, 1);
+  glBindTexture(GL_TEXTURE_3D, texture.name());
+  glGetTexImage(GL_TEXTURE_3D, 0, channels() == 3 ? GL_RGB : GL_RED, GL_FLOAT, back.data());
+  for (std::size_t i = 0; i < back.size(); ++i) ASSERT_NEAR(back[i], light.values[i], storage()) << i;
+}
+
+TEST_P(Uploader, ReproducesALinearRampAtAnyRatioOnBothLattices) {
+  const Lattice volume = unit_spacing({9, 5, 17});
+  const test::GlSampler sampler;
+  for (const Lattice& texels : {voxel_lattice(volume), cell_lattice(volume), cell_lattice(volume, {5, 3, 21}),
+                                cell_lattice(volume, {23, 8, 11})}) {
+    // e = (x + y + z)/3 of the place in the box, another order of the axes for each channel's weights.
+    const auto ramp = [](const Vec3& place, int c) {
+      return (place.x * (1 + c % 3) + place.y * (1 + (c + 1) % 3) + place.z * (1 + (c + 2) % 3)) / 6.0;
+    };
+    IlluminationGrid light(texels, channels());
+    const IndexToWorld to_volume = index_to_index(texels, volume);
+    std::size_t at = 0;
+    for (int k = 0; k < texels.size.z; ++k)
+      for (int j = 0; j < texels.size.y; ++j)
+        for (int i = 0; i < texels.size.x; ++i)
+          for (int c = 0; c < channels(); ++c)
+            light.values[at++] = float(ramp(to_volume.world({i, j, k}) / Vec3(volume.size - 1), c));
+    const Texture3D texture = uploader_->upload(light, volume);
+    std::vector<Vec3f> places;
+    RandomStream random(3, 4);
+    // Beyond the outermost texel centres the texture is constant: the ramp is asked between them.
+    for (int i = 0; i < 200; ++i) {
+      Vec3f place;
+      for (int a = 0; a < 3; ++a) {
+        const float margin = float(0.5 / texels.size[a]);
+        place[a] = margin + (1.0f - 2.0f * margin) * random.uniform_float();
+      }
+      places.push_back(place);
+    }
+    const std::vector<Vec3f> read = sampler.read(texture, places);
+    // Hardware filters with weights of 8 bits: half a 1/256 of a texel step on each axis, the largest step being 3/6
+    // over the number of texels; and float rounding of the coordinate.
+    double filter = 1e-6;
+    for (int a = 0; a < 3; ++a) filter += 0.5 / texels.size[a] / 512.0;
+    for (std::size_t i = 0; i < places.size(); ++i)
+      for (int c = 0; c < channels(); ++c) ASSERT_NEAR(read[i][c], ramp(Vec3(places[i]), c), filter + reading());
+  }
+}
+
+TEST_P(Uploader, AgreesWithTheLookUpOnTheProcessor) {
+  const Lattice volume = unit_spacing({6, 7, 8});
+  IlluminationGrid light(cell_lattice(volume), channels());
+  RandomStream random(5, 6);
+  for (float& e : light.values) e = random.uniform_float();
+  const Texture3D texture = uploader_->upload(light, volume);
+  std::vector<Vec3f> places(300);
+  for (Vec3f& place : places)
+    for (int a = 0; a < 3; ++a) place[a] = random.uniform_float();
+  const std::vector<Vec3f> read = test::GlSampler().read(texture, places);
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    const Vec3f expected = light.at_world(Vec3(places[i]) * Vec3(volume.size - 1));
+    for (int c = 0; c < channels(); ++c) {
+      // Weights of 8 bits on three axes between values that differ by at most 1.
+      ASSERT_NEAR(read[i][c], expected[c], 3.0 / 512.0 + reading());
+    }
+  }
+}
+
+TEST_P(Uploader, KeepsLightThatIsBrighterThanTheFormatHolds) {
+  IlluminationGrid light(unit_spacing({2, 2, 2}), channels());
+  std::fill(light.values.begin(), light.values.end(), 1e5f);
+  const Texture3D texture = uploader_->upload(light, light.lattice);
+  const std::vector<Vec3f> read = test::GlSampler().read(texture, {Vec3f(0.5f)});
+  EXPECT_NEAR(read[0].x, 1e5, 1e5 * 0x1p-11) << "the precision of float16";
+}
+
+TEST_P(Uploader, LeavesTheStateOfOpenGlAsItWas) {
+  GLuint mine = 0;
+  glGenTextures(1, &mine);
+  glBindTexture(GL_TEXTURE_3D, mine);
+  glPixelStorei(GL_UNPACK_ROW_LENGTH, 77);
+  glPixelStorei(GL_UNPACK_ALIGNMENT, 8);
+  IlluminationGrid light(unit_spacing({3, 3, 3}), channels());
+  const Texture3D texture = uploader_->upload(light, light.lattice);
+  GLint bound = 0;
+  GLint row_length = 0;
+  GLint alignment = 0;
+  glGetIntegerv(GL_TEXTURE_BINDING_3D, &bound);
+  glGetIntegerv(GL_UNPACK_ROW_LENGTH, &row_length);
+  glGetIntegerv(GL_UNPACK_ALIGNMENT, &alignment);
+  EXPECT_EQ(GLuint(bound), mine);
+  EXPECT_EQ(row_length, 77);
+  EXPECT_EQ(alignment, 8);
+  EXPECT_EQ(glGetError(), GLenum(GL_NO_ERROR));
+}
+
+TEST_P(Uploader, NamesTheDriversLimitWhereAnAxisIsTooLong) {
+  GLint limit = 0;
+  glGetIntegerv(GL_MAX_3D_TEXTURE_SIZE, &limit);
+  const IlluminationGrid light(unit_spacing({2, limit + 1, 1}), channels());
+  try {
+    static_cast<void>(uploader_->upload(light, unit_spacing({2, 2, 2})));
+    FAIL() << "accepted";
+  } catch (const InvalidInput& error) {
+    EXPECT_THAT(error.what(), testing::HasSubstr(std::to_string(limit)));
+  }
+}
+
+TEST_P(Uploader, RefusesAGridWithoutItsValues) {
+  IlluminationGrid light(unit_spacing({2, 2, 2}), channels());
+  light.values.pop_back();
+  EXPECT_THROW(static_cast<void>(uploader_->upload(light, light.lattice)), InvalidInput);
+}
+
+INSTANTIATE_TEST_SUITE_P(EveryBackend, Uploader, testing::ValuesIn(cases()), [](const auto& tested) {
+  return tested.param.backend + "_" + tested.param.format + "_" + std::to_string(tested.param.channels);
+});
+
+TEST(Texture3D, MovesItsNameAndDeletesItOnce) {
+  const test::EglContext context;
+  if (!context) GTEST_SKIP() << context.why();
+  const IlluminationGrid light(unit_spacing({2, 2, 2}), 1);
+  Texture3D first = uploaders().create()->upload(light, light.lattice);
+  const unsigned int name = first.name();
+  Texture3D second(std::move(first));
+  EXPECT_EQ(second.name(), name);
+  Texture3D third;
+  third = std::move(second);
+  EXPECT_EQ(glIsTexture(name), GL_TRUE);
+  third = Texture3D();
+  EXPECT_EQ(glIsTexture(name), GL_FALSE);
+}
+
+}  // namespace
+}  // namespace isolux
