@@ -1,0 +1,86 @@
+#include <fmt/format.h>
+#include <isolux/core/error.h>
+#include <isolux/resample/resampler.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "samples.h"
+
+namespace isolux::backends {
+namespace {
+
+/// Float positions of sites at texel centres are off by less than this up to some 10,000 voxels an axis.
+constexpr double kTolerance = 0.01;
+
+/// The texel whose centre is at `at` (texel index space).
+std::optional<std::size_t> texel_at(const Lattice& texels, const Vec3& at) {
+  int i[3];
+  for (int a = 0; a < 3; ++a) {
+    const double nearest = std::floor(at[a] + 0.5);
+    if (!(std::fabs(at[a] - nearest) <= kTolerance) || nearest < 0.0 || nearest >= double(texels.size[a])) return {};
+    i[a] = int(nearest);
+  }
+  return texels.offset(i[0], i[1], i[2]);
+}
+
+class Direct final : public Resampler {
+ public:
+  using Options = NoOptions;
+  explicit Direct(const Options& /*options*/) {}
+
+  ResampledGrid resample(const Volume& volume, const SampleSet& samples, const Lattice& texels,
+                         const Run& run) const override {
+    require_samples(samples);
+    const IndexToWorld to_texels = index_to_index(volume.lattice(), texels);
+    const auto channels = std::size_t(samples.channels);
+    ResampledGrid result{.grid = IlluminationGrid(texels, samples.channels),
+                         .lit = std::vector<std::uint8_t>(texels.count(), 0)};
+    std::vector<std::size_t> repeated;
+    for (std::size_t s = 0; s < samples.size(); ++s) {
+      if (s % 65536 == 0) throw_if_stopped(run);
+      const Vec3f& position = samples.sites.positions[s];
+      const std::optional<std::size_t> texel = texel_at(texels, to_texels.world(Vec3(position)));
+      if (!texel) {
+        throw InvalidInput(fmt::format(
+            "sample {} at index ({}, {}, {}) is not at a texel centre: resampler direct needs a sampler that puts its "
+            "sites there, such as texels; any other resampler takes scattered sites",
+            s, position.x, position.y, position.z));
+      }
+      if (result.lit[*texel] != 0) {
+        repeated.push_back(s);
+        continue;
+      }
+      result.lit[*texel] = 1;
+      std::copy_n(&samples.radiance[s * channels], channels, &result.grid.values[*texel * channels]);
+    }
+    add_repeated(samples, to_texels, repeated, result.grid);
+    return result;
+  }
+
+ private:
+  /// Texels with several samples get their mean.
+  static void add_repeated(const SampleSet& samples, const IndexToWorld& to_texels,
+                           const std::vector<std::size_t>& repeated, IlluminationGrid& grid) {
+    if (repeated.empty()) return;
+    const auto channels = std::size_t(samples.channels);
+    std::vector<std::uint32_t> count(grid.lattice.count(), 1);
+    for (const std::size_t s : repeated) {
+      const std::size_t texel = *texel_at(grid.lattice, to_texels.world(Vec3(samples.sites.positions[s])));
+      const double share = 1.0 / double(++count[texel]);
+      for (std::size_t c = 0; c < channels; ++c) {
+        float& value = grid.values[texel * channels + c];
+        value = float(double(value) + share * (double(samples.radiance[s * channels + c]) - double(value)));
+      }
+    }
+  }
+};
+
+}  // namespace
+
+void direct(Registry<Resampler>& registry) {
+  registry.add<Direct>("direct", "takes samples that sit at the texel centres as they are; texels without stay unlit");
+}
+
+}  // namespace isolux::backends
