@@ -1,35 +1,25 @@
 #include <fmt/format.h>
 #include <isolux/bake/bake.h>
 #include <isolux/core/error.h>
+#include <isolux/core/stopwatch.h>
 #include <isolux/resample/fill_unlit.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <utility>
 
 namespace isolux {
 namespace {
 
-/// Seconds since it was made.
-class Stopwatch {
- public:
-  [[nodiscard]] double seconds() const {
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
-  }
-
- private:
-  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
-};
-
 void require_range(const Volume& volume, const std::optional<ValueRange>& wanted) {
   const ValueRange range = value_range(volume);
   if (range.low == range.high) {
-    throw InvalidInput(fmt::format("{}: every voxel is {}; a constant volume has no level set to light", volume.name, range.low));
+    throw InvalidInput(
+        fmt::format("{}: every voxel is {}; a constant volume has no level set to light", volume.name, range.low));
   }
   if (wanted && (wanted->high < range.low || wanted->low > range.high)) {
-    throw InvalidInput(fmt::format("isovalue range {}:{}: the values of {} go from {} to {}", wanted->low, wanted->high, volume.name,
-                                   range.low, range.high));
+    throw InvalidInput(fmt::format("isovalue range {}:{}: the values of {} go from {} to {}", wanted->low, wanted->high,
+                                   volume.name, range.low, range.high));
   }
 }
 
@@ -38,15 +28,26 @@ void require_range(const Volume& volume, const std::optional<ValueRange>& wanted
 Lattice texel_lattice(const Lattice& volume, const BakeSettings& settings) {
   if (settings.lattice == TexelLattice::kVoxels) {
     if (settings.texels && *settings.texels != volume.size) {
-      throw InvalidInput(fmt::format("{}x{}x{} texels at the voxels: the volume has {}x{}x{} of them", settings.texels->x,
-                                     settings.texels->y, settings.texels->z, volume.size.x, volume.size.y, volume.size.z));
+      throw InvalidInput(fmt::format("{}x{}x{} texels at the voxels: the volume has {}x{}x{} of them",
+                                     settings.texels->x, settings.texels->y, settings.texels->z, volume.size.x,
+                                     volume.size.y, volume.size.z));
     }
     return voxel_lattice(volume);
   }
   return settings.texels ? cell_lattice(volume, *settings.texels) : cell_lattice(volume);
 }
 
-BakeResult bake(const Volume& volume, const Scene& scene, const BakeSettings& settings, const Stages& stages, const Run& run) {
+BakeSettings with_defaults(BakeSettings settings, const Stages& stages) {
+  if (settings.sampler.name.empty()) settings.sampler.name = settings.samples == 0 ? "texels" : "low_discrepancy";
+  if (settings.resampler.name.empty())
+    settings.resampler.name = settings.sampler.name == "texels" ? "direct" : "cell_grid";
+  if (settings.tracer.name.empty()) settings.tracer.name = stages.tracers.info({}).name;
+  return settings;
+}
+
+BakeResult bake(const Volume& volume, const Scene& scene, const BakeSettings& given, const Stages& stages,
+                const Run& run) {
+  const BakeSettings settings = with_defaults(given, stages);
   require_usable(volume);
   require_range(volume, settings.isovalues);
   const auto sampler = stages.samplers.create(settings.sampler.name, settings.sampler.settings);
@@ -65,7 +66,8 @@ BakeResult bake(const Volume& volume, const Scene& scene, const BakeSettings& se
                                 run);
   result.seconds["sites"] = sites_watch.seconds();
   result.sites = sites.size();
-  if (result.sites == 0) throw InvalidInput(fmt::format("{}: no site has a normal and an isovalue in the range", volume.name));
+  if (result.sites == 0)
+    throw InvalidInput(fmt::format("{}: no site has a normal and an isovalue in the range", volume.name));
 
   const Stopwatch trace_watch;
   TraceResult traced = tracer->trace(volume, scene, std::move(sites), settings.trace, run);

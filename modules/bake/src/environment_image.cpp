@@ -25,7 +25,8 @@ ImageEnvironment read_exr(const std::string& path) {
     image.width = window.max.x - window.min.x + 1;
     image.height = window.max.y - window.min.y + 1;
     Imf::Array2D<Imf::Rgba> rows(image.height, image.width);
-    file.setFrameBuffer(&rows[0][0] - window.min.x - std::ptrdiff_t(window.min.y) * image.width, 1, std::size_t(image.width));
+    file.setFrameBuffer(&rows[0][0] - window.min.x - std::ptrdiff_t(window.min.y) * image.width, 1,
+                        std::size_t(image.width));
     file.readPixels(window.min.y, window.max.y);
     image.pixels.reserve(std::size_t(image.width) * std::size_t(image.height));
     for (int y = 0; y < image.height; ++y) {
@@ -42,20 +43,25 @@ ImageEnvironment read_exr(const std::string& path) {
 
 /// Radiance HDR as it is; 8-bit formats from sRGB, exactly (stb's own conversion is a plain power).
 ImageEnvironment read_with_stb(const std::string& path) {
-  const auto srgb_to_linear = [](float v) { return v <= 0.04045f ? v / 12.92f : std::pow((v + 0.055f) / 1.055f, 2.4f); };
+  const auto srgb_to_linear = [](float v) {
+    return v <= 0.04045f ? v / 12.92f : std::pow((v + 0.055f) / 1.055f, 2.4f);
+  };
   ImageEnvironment image;
   int channels = 0;
-  const auto missing = [&] { return IoError(fmt::format("{}: cannot read the image: {}", path, stbi_failure_reason())); };
+  const auto missing = [&] {
+    return IoError(fmt::format("{}: cannot read the image: {}", path, stbi_failure_reason()));
+  };
   if (stbi_is_hdr(path.c_str()) != 0) {
-    const std::unique_ptr<float, void (*)(void*)> data(stbi_loadf(path.c_str(), &image.width, &image.height, &channels, 3),
-                                                       stbi_image_free);
+    const std::unique_ptr<float, void (*)(void*)> data(
+        stbi_loadf(path.c_str(), &image.width, &image.height, &channels, 3), stbi_image_free);
     if (data == nullptr) throw missing();
     const float* p = data.get();
-    for (std::ptrdiff_t i = 0; i < std::ptrdiff_t(image.width) * image.height; ++i, p += 3) image.pixels.emplace_back(p[0], p[1], p[2]);
+    for (std::ptrdiff_t i = 0; i < std::ptrdiff_t(image.width) * image.height; ++i, p += 3)
+      image.pixels.emplace_back(p[0], p[1], p[2]);
     return image;
   }
-  const std::unique_ptr<stbi_us, void (*)(void*)> data(stbi_load_16(path.c_str(), &image.width, &image.height, &channels, 3),
-                                                       stbi_image_free);
+  const std::unique_ptr<stbi_us, void (*)(void*)> data(
+      stbi_load_16(path.c_str(), &image.width, &image.height, &channels, 3), stbi_image_free);
   if (data == nullptr) throw missing();
   const stbi_us* p = data.get();
   for (std::ptrdiff_t i = 0; i < std::ptrdiff_t(image.width) * image.height; ++i, p += 3) {
@@ -70,11 +76,13 @@ ImageEnvironment read_with_stb(const std::string& path) {
 ImageEnvironment read_environment_image(const std::string& path) {
   if (!std::ifstream(path, std::ios::binary)) throw IoError(fmt::format("{}: cannot open the environment image", path));
   std::string extension = std::filesystem::path(path).extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(), [](unsigned char c) { return char(std::tolower(c)); });
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return char(std::tolower(c)); });
   ImageEnvironment image = extension == ".exr" ? read_exr(path) : read_with_stb(path);
   for (const Vec3f& p : image.pixels) {
     if (!(p.x >= 0.0f && p.y >= 0.0f && p.z >= 0.0f && std::isfinite(p.x + p.y + p.z))) {
-      throw InvalidInput(fmt::format("{}: a pixel is ({}, {}, {}); radiance is finite and at least 0", path, p.x, p.y, p.z));
+      throw InvalidInput(
+          fmt::format("{}: a pixel is ({}, {}, {}); radiance is finite and at least 0", path, p.x, p.y, p.z));
     }
   }
   return image;

@@ -11,7 +11,8 @@
 namespace isolux {
 
 JsonObject::JsonObject(const nlohmann::json& json, std::string place) : json_(json), place_(std::move(place)) {
-  if (!json_.is_object()) throw InvalidInput(fmt::format("{}: '{}' where an object {{...}} is wanted", place_, json_.dump()));
+  if (!json_.is_object())
+    throw InvalidInput(fmt::format("{}: '{}' where an object {{...}} is wanted", place_, json_.dump()));
 }
 
 void JsonObject::require_keys(std::initializer_list<const char*> known) const {
@@ -20,7 +21,8 @@ void JsonObject::require_keys(std::initializer_list<const char*> known) const {
     if (std::find(names.begin(), names.end(), key) != names.end()) continue;
     const std::string near = nearest_word(key, names);
     throw InvalidInput(fmt::format("{}: unknown key '{}'{}; known are {}", place_, key,
-                                   near.empty() ? "" : fmt::format(" (did you mean '{}'?)", near), fmt::join(names, ", ")));
+                                   near.empty() ? "" : fmt::format(" (did you mean '{}'?)", near),
+                                   fmt::join(names, ", ")));
   }
 }
 

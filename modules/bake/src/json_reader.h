@@ -9,8 +9,8 @@
 
 namespace isolux {
 
-/// A JSON object read strictly: every message names the place ("scene.json: lights[1].radius"), and keys that nobody asked for are
-/// errors. Values are read through it once.
+/// A JSON object read strictly: every message names the place ("scene.json: lights[1].radius"), and keys that nobody
+/// asked for are errors. Values are read through it once.
 class JsonObject {
  public:
   /// \throw InvalidInput if `json` is not an object.
@@ -24,13 +24,19 @@ class JsonObject {
   [[nodiscard]] std::string text(const char* key) const;
   /// Three finite numbers. \throw InvalidInput
   [[nodiscard]] Vec3f vector(const char* key) const;
-  [[nodiscard]] Vec3f vector_or(const char* key, const Vec3f& otherwise) const { return has(key) ? vector(key) : otherwise; }
+  [[nodiscard]] Vec3f vector_or(const char* key, const Vec3f& otherwise) const {
+    return has(key) ? vector(key) : otherwise;
+  }
   /// Three finite numbers of at least 0. \throw InvalidInput
   [[nodiscard]] Vec3f colour(const char* key) const;
-  [[nodiscard]] Vec3f colour_or(const char* key, const Vec3f& otherwise) const { return has(key) ? colour(key) : otherwise; }
+  [[nodiscard]] Vec3f colour_or(const char* key, const Vec3f& otherwise) const {
+    return has(key) ? colour(key) : otherwise;
+  }
   /// A direction: three finite numbers, not all zero. \throw InvalidInput
   [[nodiscard]] Vec3f direction(const char* key) const;
-  [[nodiscard]] Vec3f direction_or(const char* key, const Vec3f& otherwise) const { return has(key) ? direction(key) : otherwise; }
+  [[nodiscard]] Vec3f direction_or(const char* key, const Vec3f& otherwise) const {
+    return has(key) ? direction(key) : otherwise;
+  }
   /// A finite number above 0. \throw InvalidInput
   [[nodiscard]] float positive(const char* key) const;
   [[nodiscard]] std::string place(const char* key) const { return place_ + "." + key; }

@@ -49,7 +49,8 @@ std::string settings_to_json(const BakeSettings& settings, const Run& run) {
   return json.dump();
 }
 
-LightFile make_light_file(BakeResult result, const Volume& volume, const Scene& scene, const BakeSettings& settings, const Run& run) {
+LightFile make_light_file(BakeResult result, const Volume& volume, const Scene& scene, const BakeSettings& settings,
+                          const Run& run) {
   const ValueRange range = settings.isovalues.value_or(value_range(volume));
   LightFile light;
   light.metadata = {{"isolux.version", kVersion},
@@ -66,17 +67,21 @@ LightFile make_light_file(BakeResult result, const Volume& volume, const Scene& 
 void require_light_of(const LightFile& light, const Volume& volume, const std::string& light_path) {
   const auto it = light.metadata.find("isolux.volume_sha256");
   if (it == light.metadata.end()) {
-    throw InvalidInput(fmt::format("{}: it does not say which volume it lights (no isolux.volume_sha256); --force uses it all the same",
-                                   light_path));
+    throw InvalidInput(fmt::format(
+        "{}: it does not say which volume it lights (no isolux.volume_sha256); --force uses it all the same",
+        light_path));
   }
   const std::string here = volume_sha256(volume);
   if (it->second != here) {
-    throw InvalidInput(fmt::format("{}: it lights another volume (sha256 {}...) than {} ({}...); --force uses it all the same",
-                                   light_path, it->second.substr(0, 12), volume.name, here.substr(0, 12)));
+    throw InvalidInput(
+        fmt::format("{}: it lights another volume (sha256 {}...) than {} ({}...); --force uses it all the same",
+                    light_path, it->second.substr(0, 12), volume.name, here.substr(0, 12)));
   }
 }
 
-Vec3f light_albedo(const LightFile& light, float isovalue) { return scene_of(light).value_or(Scene{}).albedo.at(isovalue); }
+Vec3f light_albedo(const LightFile& light, float isovalue) {
+  return scene_of(light).value_or(Scene{}).albedo.at(isovalue);
+}
 
 OuterSide light_outer(const LightFile& light) { return scene_of(light).value_or(Scene{}).outer; }
 

@@ -6,7 +6,8 @@
 namespace isolux {
 
 PointLight light_points(const Volume& volume, const Scene& scene, std::span<const Vec3f> world_positions,
-                        const TraceSettings& settings, const BackendChoice& tracer, const Stages& stages, const Run& run) {
+                        const TraceSettings& settings, const BackendChoice& tracer, const Stages& stages,
+                        const Run& run) {
   require_usable(volume);
   const auto backend = stages.tracers.create(tracer.name, tracer.settings);
   const TrilinearField field(volume);

@@ -52,7 +52,8 @@ Light read_light(const json& value, const std::string& place) {
     SunLight sun{.direction = object.direction("direction"), .irradiance = object.colour("irradiance")};
     if (object.has("angular_diameter_deg")) sun.angular_diameter_deg = object.positive("angular_diameter_deg");
     if (sun.angular_diameter_deg > 180.0f) {
-      throw InvalidInput(fmt::format("{}: {}; at most 180 is allowed", object.place("angular_diameter_deg"), sun.angular_diameter_deg));
+      throw InvalidInput(fmt::format("{}: {}; at most 180 is allowed", object.place("angular_diameter_deg"),
+                                     sun.angular_diameter_deg));
     }
     return sun;
   }
@@ -65,7 +66,8 @@ Light read_light(const json& value, const std::string& place) {
   }
   if (type == "sphere") {
     object.require_keys({"type", "center", "radius", "radiance"});
-    return SphereLight{.center = object.vector("center"), .radius = object.positive("radius"), .radiance = object.colour("radiance")};
+    return SphereLight{
+        .center = object.vector("center"), .radius = object.positive("radius"), .radiance = object.colour("radiance")};
   }
   refuse_type(object, "sun, rectangle, sphere");
 }
@@ -77,7 +79,8 @@ IsovalueColour read_isovalue_colour(const JsonObject& scene, const char* key) {
   object.require_keys({"by_isovalue"});
   const json& rows = object.at("by_isovalue");
   const std::string place = object.place("by_isovalue");
-  if (!rows.is_array() || rows.empty()) throw InvalidInput(place + ": an array [[h,r,g,b], ...] with at least one row is wanted");
+  if (!rows.is_array() || rows.empty())
+    throw InvalidInput(place + ": an array [[h,r,g,b], ...] with at least one row is wanted");
   IsovalueColour colour;
   for (const json& row : rows) {
     const auto n = json_numbers(row, 4, place);
@@ -85,7 +88,8 @@ IsovalueColour read_isovalue_colour(const JsonObject& scene, const char* key) {
       throw InvalidInput(fmt::format("{}: {}; colours of at least 0 are wanted", place, row.dump()));
     }
     if (!colour.keys.empty() && !(colour.keys.back().isovalue < n[0])) {
-      throw InvalidInput(fmt::format("{}: isovalue {} after {}; they must rise", place, n[0], colour.keys.back().isovalue));
+      throw InvalidInput(
+          fmt::format("{}: isovalue {} after {}; they must rise", place, n[0], colour.keys.back().isovalue));
     }
     colour.keys.push_back({n[0], {n[1], n[2], n[3]}});
   }
@@ -96,7 +100,8 @@ IsovalueColour read_albedo(const JsonObject& scene) {
   IsovalueColour albedo = read_isovalue_colour(scene, "albedo");
   for (const auto& key : albedo.keys) {
     if (key.colour.x > 1.0f || key.colour.y > 1.0f || key.colour.z > 1.0f) {
-      throw InvalidInput(fmt::format("{}: {}; an albedo lies from 0 to 1", scene.place("albedo"), scene.at("albedo").dump()));
+      throw InvalidInput(
+          fmt::format("{}: {}; an albedo lies from 0 to 1", scene.place("albedo"), scene.at("albedo").dump()));
     }
   }
   return albedo;
@@ -159,7 +164,8 @@ Scene parse_scene(const std::string& text, const std::string& folder, const std:
   const JsonObject object(root, name);
   object.require_keys({"environment", "lights", "albedo", "emission", "outer"});
   Scene scene;
-  if (object.has("environment")) scene.environment = read_environment(object.at("environment"), folder, object.place("environment"));
+  if (object.has("environment"))
+    scene.environment = read_environment(object.at("environment"), folder, object.place("environment"));
   if (object.has("lights")) {
     const json& lights = object.at("lights");
     if (!lights.is_array()) throw InvalidInput(object.place("lights") + ": an array is wanted");

@@ -3,7 +3,11 @@
 namespace isolux {
 
 Stages builtin_stages() {
-  return {.readers = readers(), .extractors = extractors(), .samplers = samplers(), .tracers = tracers(), .resamplers = resamplers()};
+  return {.readers = readers(),
+          .extractors = extractors(),
+          .samplers = samplers(),
+          .tracers = tracers(),
+          .resamplers = resamplers()};
 }
 
 }  // namespace isolux

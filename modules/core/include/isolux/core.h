@@ -13,5 +13,6 @@
 #include <isolux/core/registry.h>
 #include <isolux/core/run.h>
 #include <isolux/core/sample_set.h>
+#include <isolux/core/stopwatch.h>
 #include <isolux/core/vec.h>
 #include <isolux/core/volume.h>

@@ -26,9 +26,9 @@ struct BakeSettings {
   BackendChoice resampler;
   TraceSettings trace;
   TexelLattice lattice = TexelLattice::kCells;
-  std::optional<Index3> texels;          ///< of kCells only; default one a cell
-  std::size_t samples = 0;               ///< sites of scattering samplers; 0: one a texel
-  std::optional<ValueRange> isovalues;   ///< light only these level sets
+  std::optional<Index3> texels;         ///< of kCells only; default one a cell
+  std::size_t samples = 0;              ///< sites of scattering samplers; 0: one a texel
+  std::optional<ValueRange> isovalues;  ///< light only these level sets
 };
 
 struct BakeResult {
@@ -40,10 +40,16 @@ struct BakeResult {
   std::map<std::string, double> seconds;  ///< by stage: sites, trace, resample
 };
 
-/// Lights all level sets of a volume at once. The same bits for any number of threads.
-/// \throw InvalidInput if the volume is not usable, is constant, no site is found, or a backend or option is unknown; Cancelled.
-[[nodiscard]] BakeResult bake(const Volume& volume, const Scene& scene, const BakeSettings& settings, const Stages& stages,
-                              const Run& run);
+/// `settings` with every backend named: sites at the texels and the direct resampler, or, where a number of samples or
+/// another sampler is asked for, low-discrepancy sites and Shepard's interpolation over a cell grid; the default
+/// tracer.
+[[nodiscard]] BakeSettings with_defaults(BakeSettings settings, const Stages& stages);
+
+/// Lights all level sets of a volume at once, with_defaults(). The same bits for any number of threads.
+/// \throw InvalidInput if the volume is not usable, is constant, no site is found, or a backend or option is unknown;
+/// Cancelled.
+[[nodiscard]] BakeResult bake(const Volume& volume, const Scene& scene, const BakeSettings& settings,
+                              const Stages& stages, const Run& run);
 
 /// The texel lattice that bake() uses for these settings. \throw InvalidInput
 [[nodiscard]] Lattice texel_lattice(const Lattice& volume, const BakeSettings& settings);

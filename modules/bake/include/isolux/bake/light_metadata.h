@@ -5,10 +5,10 @@
 
 namespace isolux {
 
-/// The bake's result as a file: grid and the key/value pairs isolux.version, .quantity, .scene, .settings, .volume_sha256,
-/// .iso_range and .rmse_estimate.
-[[nodiscard]] LightFile make_light_file(BakeResult result, const Volume& volume, const Scene& scene, const BakeSettings& settings,
-                                        const Run& run);
+/// The bake's result as a file: grid and the key/value pairs isolux.version, .quantity, .scene, .settings,
+/// .volume_sha256, .iso_range and .rmse_estimate.
+[[nodiscard]] LightFile make_light_file(BakeResult result, const Volume& volume, const Scene& scene,
+                                        const BakeSettings& settings, const Run& run);
 
 /// The settings as one line of JSON.
 [[nodiscard]] std::string settings_to_json(const BakeSettings& settings, const Run& run);

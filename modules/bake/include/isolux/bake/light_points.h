@@ -16,6 +16,7 @@ struct PointLight {
 
 /// e at world positions, each on the level set of its own value. \throw as bake()
 [[nodiscard]] PointLight light_points(const Volume& volume, const Scene& scene, std::span<const Vec3f> world_positions,
-                                      const TraceSettings& settings, const BackendChoice& tracer, const Stages& stages, const Run& run);
+                                      const TraceSettings& settings, const BackendChoice& tracer, const Stages& stages,
+                                      const Run& run);
 
 }  // namespace isolux

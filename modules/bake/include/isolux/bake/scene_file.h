@@ -6,7 +6,8 @@
 
 namespace isolux {
 
-/// Reads a scene in JSON (docs/file-formats.md). \throw IoError; InvalidInput naming the file, the key and the nearest known one.
+/// Reads a scene in JSON (docs/file-formats.md). \throw IoError; InvalidInput naming the file, the key and the nearest
+/// known one.
 [[nodiscard]] Scene read_scene(const std::string& path);
 
 /// The scene in `json`; image files are looked for in `folder`. `name` stands in messages. \throw as read_scene

@@ -1,0 +1,50 @@
+#include "bake_options.h"
+
+#include <fmt/format.h>
+#include <isolux/bake/scene_file.h>
+
+#include "parse.h"
+
+namespace isolux {
+namespace {
+
+/// Rays a site at each quality.
+const std::vector<std::pair<std::string, int>> kQualities{{"draft", 16}, {"good", 64}, {"reference", 1024}};
+
+}  // namespace
+
+void TraceOptions::add_to(CLI::App& command) {
+  command
+      .add_option("--scene", scene_,
+                  "environment, lights, albedo and emission (default: uniform white sky, albedo 0.8)")
+      ->type_name("SCENE.json");
+  command.add_option("--bounces", bounces_, "reflections: a number, or all (default)")->type_name("B|all");
+  command.add_option("--quality", quality_, "draft, good (default) or reference: 16, 64 or 1024 rays a site")
+      ->check(CLI::IsMember({"draft", "good", "reference"}));
+  command.add_option("--rays", rays_, "rays a site; overrides --quality")
+      ->check(CLI::Range(1, 1 << 20))
+      ->type_name("R");
+  command.add_option("--tracer", tracer_, "tracer backend")->type_name("NAME");
+}
+
+Scene TraceOptions::scene() const { return scene_.empty() ? Scene{} : read_scene(scene_); }
+
+TraceSettings TraceOptions::settings() const {
+  TraceSettings settings;
+  settings.bounces = parse_bounces(bounces_);
+  for (const auto& [name, rays] : kQualities) {
+    if (name == quality_) settings.rays = rays;
+  }
+  if (rays_ > 0) settings.rays = rays_;
+  return settings;
+}
+
+bool warn_outside_range(const Volume& volume, float isovalue, const Session& session) {
+  const ValueRange range = value_range(volume);
+  if (isovalue >= range.low && isovalue <= range.high) return true;
+  session.warn(fmt::format("isovalue {} lies outside the values of {} ({} to {}): there is no surface", isovalue,
+                           volume.name, range.low, range.high));
+  return false;
+}
+
+}  // namespace isolux

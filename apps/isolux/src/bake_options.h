@@ -1,0 +1,44 @@
+#pragma once
+
+#include <isolux/bake/bake.h>
+
+#include <CLI/App.hpp>
+#include <string>
+#include <vector>
+
+#include "session.h"
+
+namespace isolux {
+
+/// What decides how light is traced: the scene, bounces, rays and the tracer. Shared by `bake` and `extract
+/// --exact-light`.
+class TraceOptions {
+ public:
+  void add_to(CLI::App& command);
+  /// \throw UsageError, IoError, InvalidInput
+  [[nodiscard]] Scene scene() const;
+  [[nodiscard]] TraceSettings settings() const;
+  [[nodiscard]] const std::string& tracer() const { return tracer_; }
+
+ private:
+  std::string scene_;
+  std::string bounces_ = "all";
+  std::string quality_ = "good";
+  int rays_ = 0;
+  std::string tracer_;
+};
+
+/// The isovalue and what a figure of it may say: true if {f = isovalue} can be there; else a warning was printed.
+[[nodiscard]] bool warn_outside_range(const Volume& volume, float isovalue, const Session& session);
+
+/// \throw UsageError if the registry does not know the backend or its settings.
+template <class Stage>
+void require_choice(const Registry<Stage>& registry, const BackendChoice& choice) {
+  try {
+    static_cast<void>(registry.create(choice.name, choice.settings));
+  } catch (const std::exception& error) {
+    throw UsageError(error.what());
+  }
+}
+
+}  // namespace isolux

@@ -1,0 +1,127 @@
+#include <fmt/format.h>
+#include <isolux/bake/light_metadata.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+
+#include "bake_options.h"
+#include "commands.h"
+#include "parse.h"
+#include "volume_options.h"
+
+namespace isolux {
+namespace {
+
+struct Options {
+  VolumeOptions volume;
+  TraceOptions trace;
+  std::string output;
+  std::string iso_range;
+  std::string texels;
+  std::string lattice = "cells";
+  double rmse = 0.0;
+  std::size_t samples = 0;
+  std::string sampler;
+  std::string resampler;
+  std::vector<std::string> set;
+  bool compress = false;
+};
+
+BakeSettings bake_settings(const Options& options, const Stages& stages) {
+  BakeSettings settings;
+  settings.trace = options.trace.settings();
+  settings.sampler.name = options.sampler;
+  settings.tracer.name = options.trace.tracer();
+  settings.resampler.name = options.resampler;
+  settings.samples = options.samples;
+  settings.lattice = options.lattice == "voxels" ? TexelLattice::kVoxels : TexelLattice::kCells;
+  if (!options.texels.empty()) settings.texels = parse_size3("--texels", options.texels);
+  if (!options.iso_range.empty()) settings.isovalues = parse_range("--iso-range", options.iso_range);
+  apply_settings(options.set, {{"sampler", &settings.sampler.settings},
+                               {"tracer", &settings.tracer.settings},
+                               {"resampler", &settings.resampler.settings}});
+  settings = with_defaults(std::move(settings), stages);
+  require_choice(stages.samplers, settings.sampler);
+  require_choice(stages.tracers, settings.tracer);
+  require_choice(stages.resamplers, settings.resampler);
+  return settings;
+}
+
+/// Rays a site for the error asked, from the variance that a small bake shows: the error falls with the root of the
+/// rays.
+int rays_for_error(double target, const BakeResult& pilot, int pilot_rays) {
+  const double ratio = pilot.rmse_estimate / target;
+  return int(std::clamp(std::ceil(pilot_rays * ratio * ratio), double(pilot_rays), double(1 << 20)));
+}
+
+void run_bake(const Options& options, Session& session) {
+  BakeSettings settings = bake_settings(options, session.stages);
+  const Volume volume = options.volume.read(session);
+  const Scene scene = session.timed("read", [&] { return options.trace.scene(); });
+  if (options.rmse > 0.0) {
+    BakeSettings pilot = settings;
+    pilot.trace.rays = 16;
+    settings.trace.rays = session.timed("pilot", [&] {
+      return rays_for_error(options.rmse, bake(volume, scene, pilot, session.stages, session.run), pilot.trace.rays);
+    });
+    session.say(fmt::format("{} rays a site for an error of {}", settings.trace.rays, options.rmse));
+  }
+  BakeResult result = bake(volume, scene, settings, session.stages, session.run);
+  for (const auto& [stage, seconds] : result.seconds) session.add_seconds(stage, seconds);
+  const double trace_seconds = std::max(result.seconds["trace"], 1e-9);
+  const Lattice& texels = result.light.lattice;
+  auto& report = session.report;
+  report["rays"] = result.counters.rays;
+  report["rays_per_second"] = double(result.counters.rays) / trace_seconds;
+  report["hits"] = result.counters.hits;
+  report["macrocells"] = result.counters.macrocells;
+  report["cells"] = result.counters.cells;
+  report["cubics"] = result.counters.cubics;
+  report["sites"] = result.sites;
+  report["texels"] = texels.count();
+  report["texel_dims"] = {texels.size.x, texels.size.y, texels.size.z};
+  report["unlit_texels"] = result.unlit_texels;
+  report["rmse_estimate"] = result.rmse_estimate;
+  report["settings"] = nlohmann::json::parse(settings_to_json(settings, session.run));
+  session.say(fmt::format(
+      "{} texels from {} sites, {:.1f} million rays in {:.1f} s ({:.2f} million a second), error about {:.4f}",
+      texels.count(), result.sites, double(result.counters.rays) * 1e-6, trace_seconds,
+      double(result.counters.rays) * 1e-6 / trace_seconds, result.rmse_estimate));
+  session.timed("write", [&] {
+    const LightFile light = make_light_file(std::move(result), volume, scene, settings, session.run);
+    write_light(light, options.output, volume.space, {.compress = options.compress});
+  });
+}
+
+}  // namespace
+
+void add_bake_command(CLI::App& program, Session& session) {
+  CLI::App& command = *program.add_subcommand("bake", "Light all level sets of a volume at once");
+  const auto options = std::make_shared<Options>();
+  options->volume.add_to(command);
+  command.add_option("-o,--output", options->output, "the light to write")->required()->type_name("LIGHT.nrrd");
+  options->trace.add_to(command);
+  command.add_option("--iso-range", options->iso_range, "light only these level sets")->type_name("LO:HI");
+  command.add_option("--texels", options->texels, "size of the light's grid (default: one texel a cell)")
+      ->type_name("NXxNYxNZ");
+  command.add_option("--lattice", options->lattice, "texels at the cell centres (default) or at the voxels")
+      ->check(CLI::IsMember({"cells", "voxels"}));
+  command.add_option("--rmse", options->rmse, "error wanted: chooses the rays")
+      ->check(CLI::PositiveNumber)
+      ->type_name("TARGET");
+  command.add_option("--samples", options->samples, "number of scattered sites (default: one at each texel)")
+      ->check(CLI::Range(std::size_t(1), std::size_t(1) << 40))
+      ->type_name("N");
+  command.add_option("--sampler", options->sampler, "sampler backend")->type_name("NAME");
+  command.add_option("--resampler", options->resampler, "resampler backend")->type_name("NAME");
+  command
+      .add_option("--set", options->set,
+                  "an option of a backend: sampler.KEY=VALUE, tracer.KEY=VALUE or resampler.KEY=VALUE")
+      ->type_name("stage.key=value");
+  command.add_flag("--compress", options->compress, "gzip the light");
+  session.add_common_options(command);
+  command.callback([options, &session] { session.on_run([options, &session] { run_bake(*options, session); }); });
+}
+
+}  // namespace isolux

@@ -1,0 +1,121 @@
+#include <fmt/format.h>
+#include <isolux/bake/light_metadata.h>
+#include <isolux/bake/light_points.h>
+#include <isolux/mc_extract/write_mesh.h>
+#include <isolux/render/image.h>
+#include <isolux/volume_io/atomic_file.h>
+
+#include <memory>
+
+#include "bake_options.h"
+#include "commands.h"
+#include "light_options.h"
+#include "parse.h"
+#include "volume_options.h"
+
+namespace isolux {
+namespace {
+
+struct Options {
+  VolumeOptions volume;
+  LightOptions light;
+  TraceOptions trace;
+  float isovalue = 0.0f;
+  std::string output;
+  std::string backend;
+  std::string outer;
+  std::vector<std::string> set;
+  bool exact_light = false;
+};
+
+std::vector<Vec3f> positions(const IsoMesh& mesh) {
+  std::vector<Vec3f> points;
+  points.reserve(mesh.n_vertices());
+  for (const auto vertex : mesh.vertices()) {
+    const auto& p = mesh.point(vertex);
+    points.emplace_back(p[0], p[1], p[2]);
+  }
+  return points;
+}
+
+Rgb8 colour(const Vec3f& radiance) { return {srgb_code(radiance.x), srgb_code(radiance.y), srgb_code(radiance.z)}; }
+
+std::vector<Rgb8> exact_colours(const IsoMesh& mesh, const Volume& volume, const Scene& scene, const Options& options,
+                                Session& session) {
+  const PointLight light = session.timed("trace", [&] {
+    return light_points(volume, scene, positions(mesh), options.trace.settings(), {options.trace.tracer(), {}},
+                        session.stages, session.run);
+  });
+  session.report["rays"] = light.counters.rays;
+  session.report["rmse_estimate"] = light.rmse_estimate;
+  const Vec3f albedo = scene.albedo.at(options.isovalue);
+  std::vector<Rgb8> colours;
+  for (const Vec3f& e : light.radiance) colours.push_back(colour(albedo * e));
+  return colours;
+}
+
+std::vector<Rgb8> baked_colours(const IsoMesh& mesh, const LightFile& light, float isovalue) {
+  const Vec3f albedo = light_albedo(light, isovalue);
+  std::vector<Rgb8> colours;
+  for (const Vec3f& p : positions(mesh)) colours.push_back(colour(albedo * light.grid.at_world(Vec3(p))));
+  return colours;
+}
+
+OuterSide outer_side(const Options& options, OuterSide otherwise) {
+  if (options.outer.empty()) return otherwise;
+  return options.outer == "higher" ? OuterSide::kHigher : OuterSide::kLower;
+}
+
+void run_extract(const Options& options, Session& session) {
+  if (options.light.given() && options.exact_light) throw UsageError("--light and --exact-light: give one of them");
+  BackendChoice choice{options.backend, {}};
+  apply_settings(options.set, {{"extractor", &choice.settings}});
+  require_choice(session.stages.extractors, choice);
+  require_choice(session.stages.tracers, {options.trace.tracer(), {}});
+  const Volume volume = options.volume.read(session);
+  const Scene scene = options.trace.scene();
+  std::optional<LightFile> light;
+  if (options.light.given()) light = options.light.read(volume, session);
+  warn_outside_range(volume, options.isovalue, session);
+
+  const OuterSide outer = outer_side(options, light ? light_outer(*light) : scene.outer);
+  const auto extractor = session.stages.extractors.create(choice.name, choice.settings);
+  const IsoMesh mesh = session.timed("extract", [&] {
+    return extractor->extract(volume, {.isovalue = options.isovalue, .outer = outer}, session.run);
+  });
+  std::vector<Rgb8> colours;
+  if (light) colours = session.timed("light", [&] { return baked_colours(mesh, *light, options.isovalue); });
+  if (options.exact_light) colours = exact_colours(mesh, volume, scene, options, session);
+  session.timed("write", [&] {
+    write_atomically_by_name(options.output, [&](const std::string& path) { write_ply(mesh, colours, path); });
+  });
+  session.report["triangles"] = mesh.n_faces();
+  session.report["vertices"] = mesh.n_vertices();
+  session.report["settings"] = {{"isovalue", options.isovalue},
+                                {"backend", session.stages.extractors.info(choice.name).name}};
+  session.say(fmt::format("{} triangles, {} vertices", mesh.n_faces(), mesh.n_vertices()));
+}
+
+}  // namespace
+
+void add_extract_command(CLI::App& program, Session& session) {
+  CLI::App& command = *program.add_subcommand("extract", "One isosurface as a mesh, with its light as vertex colours");
+  const auto options = std::make_shared<Options>();
+  options->volume.add_to(command);
+  command.add_option("--iso", options->isovalue, "isovalue")->required()->type_name("H");
+  command.add_option("-o,--output", options->output, "the mesh to write")->required()->type_name("MESH.ply");
+  options->light.add_to(command);
+  command.add_flag("--exact-light", options->exact_light,
+                   "trace the light at the vertices instead of reading it from a file");
+  options->trace.add_to(command);
+  command
+      .add_option("--outer", options->outer,
+                  "the side that is outside: lower or higher values (default: what the light or scene says)")
+      ->check(CLI::IsMember({"lower", "higher"}));
+  command.add_option("--backend", options->backend, "extractor backend")->type_name("NAME");
+  command.add_option("--set", options->set, "an option of the extractor")->type_name("key=value");
+  session.add_common_options(command);
+  command.callback([options, &session] { session.on_run([options, &session] { run_extract(*options, session); }); });
+}
+
+}  // namespace isolux

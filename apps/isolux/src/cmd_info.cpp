@@ -1,0 +1,125 @@
+#include <fmt/format.h>
+#include <isolux/core/options.h>
+#include <isolux/volume_io/read.h>
+#include <isolux/volume_io/scalar_type.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+#include <memory>
+
+#include "commands.h"
+#include "volume_options.h"
+
+namespace isolux {
+namespace {
+
+constexpr std::size_t kBins = 32;
+
+struct Statistics {
+  float low = std::numeric_limits<float>::infinity();
+  float high = -std::numeric_limits<float>::infinity();
+  double mean = 0.0;
+  std::size_t finite = 0;
+  std::size_t not_finite = 0;
+  std::array<std::size_t, kBins> histogram{};  ///< of the finite values, equal bins from low to high
+};
+
+Statistics statistics(const Volume& volume) {
+  Statistics s;
+  double sum = 0.0;
+  for (const float v : volume.values.values()) {
+    if (!std::isfinite(v)) {
+      ++s.not_finite;
+      continue;
+    }
+    s.low = std::min(s.low, v);
+    s.high = std::max(s.high, v);
+    sum += double(v);
+    ++s.finite;
+  }
+  if (s.finite == 0) return s;
+  s.mean = sum / double(s.finite);
+  const double scale = s.high > s.low ? double(kBins) / (double(s.high) - double(s.low)) : 0.0;
+  for (const float v : volume.values.values()) {
+    if (std::isfinite(v)) ++s.histogram[std::min(kBins - 1, std::size_t((double(v) - double(s.low)) * scale))];
+  }
+  return s;
+}
+
+nlohmann::json to_json(const Volume& volume, const Statistics& s) {
+  const Lattice& lattice = volume.lattice();
+  const Vec3 spacing = lattice.frame.spacing();
+  const Vec3& o = lattice.frame.origin;
+  nlohmann::json axes = nlohmann::json::array();
+  for (int a = 0; a < 3; ++a)
+    axes.push_back({lattice.frame.axes[a].x, lattice.frame.axes[a].y, lattice.frame.axes[a].z});
+  nlohmann::json json{{"name", volume.name},
+                      {"dims", {lattice.size.x, lattice.size.y, lattice.size.z}},
+                      {"type", scalar_type_name(volume.stored_type)},
+                      {"spacing", {spacing.x, spacing.y, spacing.z}},
+                      {"origin", {o.x, o.y, o.z}},
+                      {"space", volume.space},
+                      {"space_directions", axes},
+                      {"voxels", volume.values.values().size()},
+                      {"not_finite", s.not_finite},
+                      {"sha256", volume_sha256(volume)}};
+  if (s.finite > 0) {
+    json["range"] = {s.low, s.high};
+    json["mean"] = s.mean;
+    json["histogram"] = {{"low", s.low}, {"high", s.high}, {"counts", s.histogram}};
+  }
+  return json;
+}
+
+void print(const Volume& volume, const Statistics& s) {
+  const Lattice& lattice = volume.lattice();
+  const Vec3 spacing = lattice.frame.spacing();
+  const Vec3& o = lattice.frame.origin;
+  fmt::print("volume   {}\n", volume.name);
+  fmt::print("dims     {} x {} x {}\n", lattice.size.x, lattice.size.y, lattice.size.z);
+  fmt::print("type     {}\n", scalar_type_name(volume.stored_type));
+  fmt::print("spacing  {:g} x {:g} x {:g}\n", spacing.x, spacing.y, spacing.z);
+  fmt::print("origin   {:g}, {:g}, {:g} in {}\n", o.x, o.y, o.z, volume.space);
+  if (s.not_finite > 0) fmt::print("voxels that are infinite or not a number: {}\n", s.not_finite);
+  if (s.finite == 0) return;
+  fmt::print("range    {:g} to {:g}, mean {:g}\n", s.low, s.high, s.mean);
+  const std::size_t most = *std::max_element(s.histogram.begin(), s.histogram.end());
+  const double step = (double(s.high) - double(s.low)) / double(kBins);
+  for (std::size_t b = 0; b < kBins; ++b) {
+    // Logarithmic bars: the background would hide everything else.
+    const double bar =
+        s.histogram[b] > 0 ? 1.0 + 49.0 * std::log(double(s.histogram[b])) / std::log(double(most) + 1.0) : 0.0;
+    fmt::print("  {:>12.5g} {:>10}  {}\n", double(s.low) + step * double(b), s.histogram[b],
+               std::string(std::size_t(bar), '#'));
+  }
+}
+
+}  // namespace
+
+void add_info_command(CLI::App& program, Session& session) {
+  CLI::App& command = *program.add_subcommand("info", "Dims, spacing, type, value range and histogram of a volume");
+  struct Options {
+    VolumeOptions volume;
+    bool json = false;
+  };
+  const auto options = std::make_shared<Options>();
+  options->volume.add_to(command);
+  command.add_flag("--json", options->json, "as JSON");
+  session.add_common_options(command);
+  command.callback([options, &session] {
+    session.on_run([options, &session] {
+      const Volume volume = options->volume.read_as_is(session);
+      const Statistics s = statistics(volume);
+      if (options->json) {
+        fmt::print("{}\n", to_json(volume, s).dump(2));
+      } else {
+        print(volume, s);
+      }
+    });
+  });
+}
+
+}  // namespace isolux

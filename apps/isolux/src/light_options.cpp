@@ -1,0 +1,20 @@
+#include "light_options.h"
+
+#include <isolux/bake/light_metadata.h>
+
+namespace isolux {
+
+void LightOptions::add_to(CLI::App& command) {
+  command.add_option("--light", path_, "the light that `isolux bake` wrote for this volume")->type_name("LIGHT.nrrd");
+  command.add_flag("--force", force_, "use the light of another volume all the same");
+}
+
+LightFile LightOptions::read(const Volume& volume, Session& session) const {
+  return session.timed("read", [&] {
+    LightFile light = read_light(path_);
+    if (!force_) require_light_of(light, volume, path_);
+    return light;
+  });
+}
+
+}  // namespace isolux

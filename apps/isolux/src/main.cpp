@@ -1,0 +1,94 @@
+// isolux: the command line. Commands, options, files and exit codes are those of docs/command-line.md.
+#include <fmt/format.h>
+#include <isolux/bake/version.h>
+#include <isolux/core/error.h>
+#include <isolux/core/options.h>
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <exception>
+#include <new>
+#include <string>
+#include <vector>
+
+#include "commands.h"
+#include "session.h"
+#include "signals.h"
+
+namespace {
+
+enum ExitStatus { kDone = 0, kFailed = 1, kUsage = 2, kInterrupted = 130 };
+
+int complain(const std::string& what, std::string why, ExitStatus status) {
+  for (char& c : why) {
+    if (c == '\n') c = ' ';
+  }
+  fmt::print(stderr, "isolux: error: {}: {}\n", what, why);
+  return status;
+}
+
+/// CLI11's words, and for an unknown option or command the nearest known one.
+std::string explain(const CLI::ParseError& error, const CLI::App& app) {
+  std::string why = error.what();
+  if (dynamic_cast<const CLI::ExtrasError*>(&error) == nullptr) return why;
+  std::vector<std::string> known;
+  for (const CLI::Option* option : app.get_options()) {
+    for (const auto& name : option->get_lnames()) known.push_back("--" + name);
+  }
+  for (const CLI::App* command : app.get_subcommands({})) known.push_back(command->get_name());
+  for (const auto& word : app.remaining()) {
+    const std::string near = isolux::nearest_word(word, known);
+    if (!near.empty()) why += fmt::format(" (did you mean {}?)", near);
+  }
+  return why;
+}
+
+const CLI::App& chosen(const CLI::App& program) {
+  const auto commands = program.get_subcommands();
+  return commands.empty() ? program : *commands.front();
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  const isolux::SignalWatcher signals;
+  std::string what = "command line";
+  try {
+    isolux::Session session;
+    session.run.stop = signals.token();
+    CLI::App program(
+        "Every isosurface of a volume in true light.\nFirst light a volume (bake), then draw (render, view) or export "
+        "(extract) any isosurface of it.",
+        "isolux");
+    program.set_version_flag("--version", std::string("isolux ") + isolux::kVersion);
+    program.require_subcommand(1);
+    program.fallthrough(false);
+    isolux::add_info_command(program, session);
+    isolux::add_backends_command(program, session);
+    isolux::add_extract_command(program, session);
+    isolux::add_bake_command(program, session);
+    isolux::add_render_command(program, session);
+    isolux::add_probe_command(program, session);
+    isolux::add_convert_command(program, session);
+    isolux::add_companion_commands(program, session);
+    try {
+      program.parse(argc, argv);
+    } catch (const CLI::Success& help) {
+      return program.exit(help);
+    } catch (const CLI::ParseError& error) {
+      const CLI::App& app = chosen(program);
+      return complain(&app == &program ? what : app.get_name(), explain(error, app), kUsage);
+    }
+    what = chosen(program).get_name();
+    session.run_action();
+    return kDone;
+  } catch (const isolux::UsageError& error) {
+    return complain(what, error.what(), kUsage);
+  } catch (const isolux::Cancelled& error) {
+    return complain(what, error.what(), kInterrupted);
+  } catch (const std::bad_alloc&) {
+    return complain(what, "not enough memory", kFailed);
+  } catch (const std::exception& error) {
+    return complain(what, error.what(), kFailed);
+  }
+}

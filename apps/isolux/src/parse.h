@@ -1,0 +1,29 @@
+#pragma once
+
+#include <isolux/bake/bake.h>
+#include <isolux/core/volume.h>
+
+#include <string>
+#include <vector>
+
+namespace isolux {
+
+/// Readers of option values; each throws UsageError naming the option, the text and what is allowed.
+
+/// "64x64x32": whole numbers of at least 1.
+[[nodiscard]] Index3 parse_size3(const std::string& option, const std::string& text);
+/// "800x600"
+[[nodiscard]] std::pair<int, int> parse_size2(const std::string& option, const std::string& text);
+/// "LO:HI", LO <= HI
+[[nodiscard]] ValueRange parse_range(const std::string& option, const std::string& text);
+/// "a,b,c" with `count` finite numbers
+[[nodiscard]] std::vector<double> parse_numbers(const std::string& option, const std::string& text, std::size_t count);
+/// "all" or a whole number of at least 0
+[[nodiscard]] int parse_bounces(const std::string& text);
+
+/// Puts `--set stage.key=value` where it belongs; `stage` is one of the names in `targets`, and may be left out if
+/// there is one.
+void apply_settings(const std::vector<std::string>& texts,
+                    const std::vector<std::pair<std::string, Settings*>>& targets);
+
+}  // namespace isolux

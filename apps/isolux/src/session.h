@@ -1,0 +1,63 @@
+#pragma once
+
+#include <isolux/bake/stages.h>
+#include <isolux/core/run.h>
+#include <isolux/core/stopwatch.h>
+
+#include <CLI/App.hpp>
+#include <functional>
+#include <nlohmann/json.hpp>
+#include <string>
+
+namespace isolux {
+
+/// What the command line asked for is wrong: exit status 2.
+class UsageError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// One invocation: the backends, the common options, and the report that commands add to.
+class Session {
+ public:
+  Session();
+
+  /// --threads, --seed, --report and --quiet of every command.
+  void add_common_options(CLI::App& command);
+  /// What runs once the whole command line was understood.
+  void on_run(std::function<void()> action) { action_ = std::move(action); }
+  void run_action();
+
+  /// Runs `work`, counting its seconds under `stage` in the report.
+  template <class Work>
+  auto timed(const std::string& stage, Work&& work) {
+    const Stopwatch watch;
+    struct Guard {
+      Session& session;
+      const std::string& stage;
+      const Stopwatch& watch;
+      ~Guard() { session.add_seconds(stage, watch.seconds()); }
+    } guard{*this, stage, watch};
+    return work();
+  }
+  void add_seconds(const std::string& stage, double seconds);
+
+  [[nodiscard]] bool quiet() const { return quiet_; }
+  /// One line for people, on stderr unless --quiet.
+  void say(const std::string& line) const;
+  /// `isolux: warning: ...` on stderr, also with --quiet.
+  void warn(const std::string& line) const;
+
+  Stages stages;
+  Run run;
+  nlohmann::json report;  ///< --report; commands add their figures
+
+ private:
+  void write_report() const;
+
+  bool quiet_ = false;
+  std::string report_path_;
+  std::function<void()> action_;
+};
+
+}  // namespace isolux

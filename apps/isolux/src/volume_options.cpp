@@ -1,0 +1,68 @@
+#include "volume_options.h"
+
+#include <isolux/core/error.h>
+#include <isolux/volume_io/read.h>
+#include <isolux/volume_io/scalar_type.h>
+
+#include <cmath>
+
+#include "parse.h"
+
+namespace isolux {
+
+void VolumeOptions::add_to(CLI::App& command) {
+  command.add_option("VOLUME", source_, "a file, a folder of DICOM slices, or gen:NAME[:N]")->required();
+  command.add_option("--dims", dims_, "grid points of a headerless file")->type_name("NXxNYxNZ");
+  command.add_option("--type", type_, "scalar type of a headerless file, such as uint8 or float32")->type_name("TYPE");
+  command.add_option("--spacing", spacing_, "distance of grid points, world units; replaces the file's")
+      ->type_name("SX,SY,SZ");
+  command.add_option("--endian", endian_, "byte order of a headerless file")
+      ->check(CLI::IsMember({"little", "big"}))
+      ->type_name("ORDER");
+  command.add_option("--replace-nonfinite", replacement_, "value for voxels that are infinite or not a number")
+      ->type_name("VALUE");
+  command.add_flag("--allow-external-data", allow_external_, "a header may name a data file outside its folder");
+}
+
+ReadOptions VolumeOptions::read_options() const {
+  ReadOptions options;
+  options.allow_external_data = allow_external_;
+  if (dims_.empty() != type_.empty()) throw UsageError("--dims and --type go together: a headerless file needs both");
+  if (!dims_.empty()) {
+    RawLayout layout;
+    layout.size = parse_size3("--dims", dims_);
+    try {
+      layout.type = parse_scalar_type(type_);
+    } catch (const InvalidInput& error) {
+      throw UsageError(std::string("--type: ") + error.what());
+    }
+    layout.big_endian = endian_ == "big";
+    options.raw = layout;
+  }
+  if (!spacing_.empty()) {
+    const auto s = parse_numbers("--spacing", spacing_, 3);
+    if (!(s[0] > 0.0 && s[1] > 0.0 && s[2] > 0.0))
+      throw UsageError("--spacing = '" + spacing_ + "': allowed are numbers above 0");
+    options.spacing = Vec3(s[0], s[1], s[2]);
+  }
+  return options;
+}
+
+Volume VolumeOptions::read_as_is(Session& session) const {
+  const ReadOptions options = read_options();
+  return session.timed("read", [&] { return read_volume(source_, options, session.run, session.stages.readers); });
+}
+
+Volume VolumeOptions::read(Session& session) const {
+  Volume volume = read_as_is(session);
+  if (!replacement_.empty()) {
+    const auto value = float(parse_numbers("--replace-nonfinite", replacement_, 1)[0]);
+    for (float& voxel : volume.values.values()) {
+      if (!std::isfinite(voxel)) voxel = value;
+    }
+  }
+  require_usable(volume);
+  return volume;
+}
+
+}  // namespace isolux

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <isolux/core/volume.h>
+#include <isolux/volume_io/volume_reader.h>
+
+#include <CLI/App.hpp>
+#include <string>
+
+#include "session.h"
+
+namespace isolux {
+
+/// The VOLUME argument and what goes with it.
+class VolumeOptions {
+ public:
+  void add_to(CLI::App& command);
+  [[nodiscard]] const std::string& source() const { return source_; }
+  /// As in the file: voxels may be infinite or not numbers, axes may be 1 wide. \throw UsageError, IoError,
+  /// InvalidInput
+  [[nodiscard]] Volume read_as_is(Session& session) const;
+  /// With --replace-nonfinite applied, and fit for every stage (require_usable).
+  [[nodiscard]] Volume read(Session& session) const;
+
+ private:
+  [[nodiscard]] ReadOptions read_options() const;
+
+  std::string source_;
+  std::string dims_;
+  std::string type_;
+  std::string spacing_;
+  std::string endian_ = "little";
+  std::string replacement_;
+  bool allow_external_ = false;
+};
+
+}  // namespace isolux

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <isolux/core/vec.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace isolux {
+
+/// A picture in linear radiance, RGB, row 0 at the top, x fastest.
+struct Image {
+  int width = 0;
+  int height = 0;
+  std::vector<Vec3f> pixels;
+
+  Image() = default;
+  Image(int columns, int rows, const Vec3f& colour = Vec3f(0.0f))
+      : width(columns), height(rows), pixels(std::size_t(columns) * std::size_t(rows), colour) {}
+  [[nodiscard]] Vec3f& at(int x, int y) { return pixels[std::size_t(y) * std::size_t(width) + std::size_t(x)]; }
+  [[nodiscard]] const Vec3f& at(int x, int y) const {
+    return pixels[std::size_t(y) * std::size_t(width) + std::size_t(x)];
+  }
+};
+
+/// A linear value as an 8-bit sRGB code (IEC 61966-2-1), clamped to 0..255; NaN gives 0.
+[[nodiscard]] std::uint8_t srgb_code(float linear);
+
+/// Writes 8-bit sRGB PNG. \throw IoError naming path
+void write_png(const Image& image, const std::string& path);
+
+/// Two pictures of one height side by side, with a gap of `gap` pixels in `colour`.
+[[nodiscard]] Image side_by_side(const Image& left, const Image& right, int gap, const Vec3f& colour);
+
+}  // namespace isolux

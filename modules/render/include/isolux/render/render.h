@@ -1,0 +1,51 @@
+#pragma once
+
+#include <isolux/core/field.h>
+#include <isolux/core/illumination_grid.h>
+#include <isolux/core/run.h>
+#include <isolux/core/volume.h>
+#include <isolux/render/camera.h>
+#include <isolux/render/image.h>
+
+#include <functional>
+
+namespace isolux {
+
+/// What a pixel sees of the surface.
+struct SurfacePoint {
+  Vec3 index{0.0};  ///< index space
+  Vec3 world{0.0};
+  Vec3 normal{0.0};       ///< world, unit, towards the outer side; (0,0,0) where there is none
+  Vec3 towards_eye{0.0};  ///< world, unit
+  bool outside = true;    ///< the camera sees the outer side
+};
+
+/// Radiance that a surface point sends to the camera.
+using Shader = std::function<Vec3f(const SurfacePoint&)>;
+
+struct RenderSettings {
+  int width = 800;
+  int height = 600;
+  int supersampling = 3;  ///< squared: stratified rays a pixel
+  float isovalue = 0.0f;
+  OuterSide outer = OuterSide::kLower;
+  GradientKind gradient = GradientKind::kCentralDifferences;
+  Vec3f background{0.5f};  ///< linear radiance
+};
+
+/// Casts rays at the level set {f = isovalue} of the trilinear field itself, not at a mesh of it. The same bits for any
+/// number of threads. \pre require_usable(volume). \throw InvalidInput for an empty picture; Cancelled
+[[nodiscard]] Image render(const Volume& volume, const Camera& camera, const RenderSettings& settings,
+                           const Shader& shader, const Run& run);
+
+/// The baked light on a diffuse surface: albedo times e. The inner side, which has no light of its own, is drawn in a
+/// dim local shade.
+[[nodiscard]] Shader global_shader(const IlluminationGrid& light, const Vec3f& albedo);
+
+/// What graphics hardware shows without global light: a headlight and a hemisphere of sky, no shadows.
+[[nodiscard]] Shader local_shader(const Vec3f& albedo);
+
+/// The normal as a colour, (n + 1)/2: to look for faults.
+[[nodiscard]] Shader normal_shader();
+
+}  // namespace isolux

@@ -1,0 +1,37 @@
+#include <fmt/format.h>
+#include <isolux/core/error.h>
+#include <isolux/render/image.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include <stb/stb_image_write.h>
+
+namespace isolux {
+
+std::uint8_t srgb_code(float linear) {
+  if (!(linear > 0.0f)) return 0;
+  const float v = std::min(linear, 1.0f);
+  const float encoded = v <= 0.0031308f ? 12.92f * v : 1.055f * std::pow(v, 1.0f / 2.4f) - 0.055f;
+  return std::uint8_t(std::lround(encoded * 255.0f));
+}
+
+void write_png(const Image& image, const std::string& path) {
+  std::vector<std::uint8_t> bytes;
+  bytes.reserve(image.pixels.size() * 3);
+  for (const Vec3f& p : image.pixels) {
+    for (int c = 0; c < 3; ++c) bytes.push_back(srgb_code(p[c]));
+  }
+  if (stbi_write_png(path.c_str(), image.width, image.height, 3, bytes.data(), image.width * 3) == 0) {
+    throw IoError(fmt::format("{}: cannot write the picture", path));
+  }
+}
+
+Image side_by_side(const Image& left, const Image& right, int gap, const Vec3f& colour) {
+  Image both(left.width + gap + right.width, std::max(left.height, right.height), colour);
+  for (int y = 0; y < left.height; ++y) std::copy_n(&left.at(0, y), left.width, &both.at(0, y));
+  for (int y = 0; y < right.height; ++y) std::copy_n(&right.at(0, y), right.width, &both.at(left.width + gap, y));
+  return both;
+}
+
+}  // namespace isolux

@@ -1,0 +1,105 @@
+#include <fmt/format.h>
+#include <isolux/core/error.h>
+#include <isolux/core/parallel.h>
+#include <isolux/core/random.h>
+#include <isolux/raytrace_flat/level_set_intersector.h>
+#include <isolux/render/render.h>
+
+#include <algorithm>
+#include <glm/geometric.hpp>
+
+namespace isolux {
+namespace {
+
+/// One picture's constants, and the radiance of single rays.
+class Raycaster {
+ public:
+  Raycaster(const Volume& volume, const Camera& camera, const RenderSettings& settings, const Shader& shader)
+      : camera_(camera),
+        settings_(settings),
+        shader_(shader),
+        field_(volume),
+        intersector_(volume),
+        world_to_index_(glm::inverse(volume.lattice().frame.axes)),
+        eye_index_(volume.lattice().frame.index(camera.eye)) {}
+
+  [[nodiscard]] Vec3f pixel(int x, int y, std::uint64_t seed) const {
+    RandomStream random(seed, std::uint64_t(y) * std::uint64_t(settings_.width) + std::uint64_t(x));
+    const int n = settings_.supersampling;
+    Vec3f sum(0.0f);
+    for (int s = 0; s < n * n; ++s) {
+      const double px = x + (s % n + random.uniform_double()) / n;
+      const double py = y + (double(s / n) + random.uniform_double()) / n;
+      sum += radiance((2.0 * px - settings_.width) / settings_.height, 1.0 - 2.0 * py / settings_.height);
+    }
+    return sum / float(n * n);
+  }
+
+ private:
+  [[nodiscard]] Vec3f radiance(double x, double y) const {
+    const Vec3 direction = camera_.direction(x, y);
+    const Vec3 index_direction = world_to_index_ * direction;
+    const auto hit = intersector_.first_hit(eye_index_, index_direction, settings_.isovalue);
+    if (!hit) return settings_.background;
+    SurfacePoint point;
+    point.index = hit->position;
+    point.world = field_.lattice().frame.world(hit->position);
+    point.normal = field_.normal(hit->position, settings_.outer, settings_.gradient);
+    point.towards_eye = -direction;
+    // The cell's own gradient says which side is seen; the smoothed normal may disagree near silhouettes.
+    const double rise = glm::dot(field_.cell_gradient(hit->position), index_direction);
+    point.outside = settings_.outer == OuterSide::kLower ? rise >= 0.0 : rise <= 0.0;
+    return shader_(point);
+  }
+
+  const Camera& camera_;
+  const RenderSettings& settings_;
+  const Shader& shader_;
+  TrilinearField field_;
+  LevelSetIntersector intersector_;
+  Mat3 world_to_index_;
+  Vec3 eye_index_;
+};
+
+/// A headlight over the viewer's shoulder and a sky of half its strength.
+float local_light(const SurfacePoint& point) {
+  const Vec3 n = point.outside ? point.normal : -point.normal;
+  const Vec3 sky(0.0, 0.0, 1.0);
+  const double head = std::max(0.0, glm::dot(n, point.towards_eye));
+  return float(0.7 * head + 0.15 * (1.0 + glm::dot(n, sky)));
+}
+
+}  // namespace
+
+Image render(const Volume& volume, const Camera& camera, const RenderSettings& settings, const Shader& shader,
+             const Run& run) {
+  if (settings.width < 1 || settings.height < 1 || settings.supersampling < 1) {
+    throw InvalidInput(fmt::format("a picture of {}x{} pixels with {}x{} rays each: all must be at least 1",
+                                   settings.width, settings.height, settings.supersampling, settings.supersampling));
+  }
+  Image image(settings.width, settings.height);
+  const Raycaster raycaster(volume, camera, settings, shader);
+  parallel_blocks(std::size_t(settings.height), 4, run, "render", [&](const Block& rows) {
+    for (auto y = int(rows.begin); y < int(rows.end); ++y) {
+      for (int x = 0; x < settings.width; ++x) image.at(x, y) = raycaster.pixel(x, y, run.seed);
+    }
+  });
+  return image;
+}
+
+Shader global_shader(const IlluminationGrid& light, const Vec3f& albedo) {
+  return [&light, albedo](const SurfacePoint& point) {
+    if (!point.outside) return albedo * (0.1f * local_light(point));
+    return albedo * light.at_world(point.world);
+  };
+}
+
+Shader local_shader(const Vec3f& albedo) {
+  return [albedo](const SurfacePoint& point) { return albedo * local_light(point); };
+}
+
+Shader normal_shader() {
+  return [](const SurfacePoint& point) { return Vec3f(0.5 * (point.normal + 1.0)); };
+}
+
+}  // namespace isolux
