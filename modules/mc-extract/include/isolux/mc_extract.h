@@ -2,5 +2,6 @@
 #pragma once
 
 #include <isolux/mc_extract/extractor.h>
+#include <isolux/mc_extract/indexed_mesh.h>
 #include <isolux/mc_extract/iso_mesh.h>
 #include <isolux/mc_extract/write_mesh.h>

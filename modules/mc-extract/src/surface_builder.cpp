@@ -1,0 +1,72 @@
+#include "surface_builder.h"
+
+#include <algorithm>
+#include <glm/geometric.hpp>
+#include <limits>
+#include <utility>
+
+#include "build_mesh.h"
+
+namespace isolux::mc {
+
+namespace {
+constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
+}
+
+SurfaceBuilder::SurfaceBuilder(const Volume& volume, const ExtractSettings& settings)
+    : field_(volume),
+      lattice_(volume.lattice()),
+      level_set_(lattice_, settings),
+      normals_(settings.normals),
+      gradient_to_world_(lattice_.frame.gradient_to_world()) {
+  for (auto& plane : edge_vertices_) plane.assign(std::size_t(lattice_.size.x) * lattice_.size.y * 8, kNone);
+}
+
+void SurfaceBuilder::begin_slab(int k) { std::ranges::fill(edge_vertices_[(k + 1) & 1], kNone); }
+
+int SurfaceBuilder::inside_corners(const Index3& cell) const {
+  int inside = 0;
+  for (int c = 0; c < 8; ++c) inside |= int(level_set_.inside(value(cell + Index3(c & 1, c >> 1 & 1, c >> 2)))) << c;
+  return inside;
+}
+
+std::uint32_t SurfaceBuilder::edge_vertex(const Index3& low, int direction) {
+  const std::size_t point = std::size_t(low.y) * lattice_.size.x + low.x;
+  std::uint32_t& id = edge_vertices_[low.z & 1][point * 8 + direction];
+  if (id != kNone) return id;
+  const Index3 step(direction & 1, direction >> 1 & 1, direction >> 2);
+  const float a = value(low);
+  const float b = value(low + step);
+  // Where the field has no gradient the edge itself still tells which way is up.
+  const bool rises = level_set_.inside(b) == (level_set_.outer == OuterSide::kLower);
+  const Vec3 uphill = Vec3(step) * (rises ? 1.0 : -1.0);
+  id = push(Vec3(low) + double(level_set_.fraction(a, b)) * Vec3(step), uphill);
+  return id;
+}
+
+std::uint32_t SurfaceBuilder::add_vertex(const Vec3& index) { return push(index, field_.cell_gradient(index)); }
+
+std::uint32_t SurfaceBuilder::push(const Vec3& index, const Vec3& uphill) {
+  Vec3 normal = field_.normal(index, level_set_.outer, GradientKind::kCentralDifferences);
+  const double length = glm::dot(normal, normal);
+  if (!(length > 0.5)) {
+    const Vec3 outwards = gradient_to_world_ * uphill * (level_set_.outer == OuterSide::kLower ? -1.0 : 1.0);
+    const double size = glm::length(outwards);
+    normal = size > 0.0 && size < std::numeric_limits<double>::infinity() ? outwards / size : Vec3(0.0, 0.0, 1.0);
+  }
+  mesh_.positions.emplace_back(lattice_.frame.world(index));
+  mesh_.normals.emplace_back(normal);
+  return std::uint32_t(mesh_.positions.size() - 1);
+}
+
+void SurfaceBuilder::add_triangle(std::uint32_t a, std::uint32_t b, std::uint32_t c) {
+  if (level_set_.mirrored) std::swap(b, c);
+  mesh_.triangles.push_back({a, b, c});
+}
+
+IndexedMesh SurfaceBuilder::take() {
+  if (normals_ == NormalKind::kFaces) set_face_normals(mesh_);
+  return std::move(mesh_);
+}
+
+}  // namespace isolux::mc
