@@ -1,0 +1,118 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <isolux/core/error.h>
+#include <isolux/core/registry.h>
+
+namespace isolux {
+namespace {
+
+using testing::HasSubstr;
+using testing::ThrowsMessage;
+
+class Stage {
+ public:
+  static constexpr std::string_view kStage = "filter";
+  virtual ~Stage() = default;
+  [[nodiscard]] virtual double answer() const = 0;
+};
+
+enum class Flavour { kSweet, kSour };
+
+class Mixer : public Stage {
+ public:
+  struct Options {
+    int count = 3;
+    double weight = 0.5;
+    bool loud = false;
+    Flavour flavour = Flavour::kSweet;
+
+    void describe(OptionVisitor& option) {
+      option("count", count, {.min = 1, .max = 10, .unit = "items", .help = "how many"});
+      option("weight", weight, {.min = 0, .help = "how heavy"});
+      option("loud", loud, {.help = "whether"});
+      option("flavour", flavour, {{"sweet", Flavour::kSweet}, {"sour", Flavour::kSour}}, {.help = "which"});
+    }
+  };
+  explicit Mixer(const Options& options) : options_(options) {}
+  [[nodiscard]] double answer() const override {
+    return options_.count + options_.weight + (options_.loud ? 100 : 0) +
+           (options_.flavour == Flavour::kSour ? 1000 : 0);
+  }
+
+ private:
+  Options options_;
+};
+
+class Plain : public Stage {
+ public:
+  using Options = NoOptions;
+  explicit Plain(const Options& /*options*/) {}
+  [[nodiscard]] double answer() const override { return -1; }
+};
+
+Registry<Stage> registry() {
+  Registry<Stage> r;
+  r.add<Mixer>("mixer", "mixes");
+  r.add<Plain>("plain", "does not");
+  r.add_unavailable("fancy", "package Fancy was not found");
+  r.set_default("plain");
+  return r;
+}
+
+TEST(Registry, MakesBackendsWithTheirDefaultsAndSettings) {
+  EXPECT_EQ(registry().create("mixer")->answer(), 3.5);
+  EXPECT_EQ(
+      registry().create("mixer", {{"count", "7"}, {"weight", "0.25"}, {"loud", "true"}, {"flavour", "sour"}})->answer(),
+      1107.25);
+  EXPECT_EQ(registry().create()->answer(), -1);
+}
+
+TEST(Registry, NamesWhatIsAllowedWhenABackendIsUnknown) {
+  EXPECT_THAT([] { static_cast<void>(registry().create("mixr")); },
+              ThrowsMessage<InvalidInput>(
+                  testing::AllOf(HasSubstr("filter"), HasSubstr("did you mean 'mixer'"), HasSubstr("plain"))));
+  EXPECT_THAT([] { static_cast<void>(registry().create("fancy")); },
+              ThrowsMessage<InvalidInput>(HasSubstr("package Fancy was not found")));
+}
+
+TEST(Registry, RefusesASecondBackendOfOneName) {
+  auto r = registry();
+  EXPECT_THROW((r.add<Plain>("mixer", "again")), InvalidInput);
+}
+
+TEST(Registry, ListsOptionsWithRangesAndDefaults) {
+  const Registry<Stage> r = registry();
+  const BackendInfo& mixer = r.info("mixer");
+  ASSERT_EQ(mixer.options.size(), 4U);
+  EXPECT_EQ(mixer.options[0].allowed(), "a whole number from 1 to 10");
+  EXPECT_EQ(mixer.options[1].allowed(), "a number of at least 0");
+  EXPECT_EQ(mixer.options[2].default_value, "false");
+  EXPECT_EQ(mixer.options[3].allowed(), "sweet | sour");
+}
+
+using Bad = std::tuple<std::string, std::string, std::string>;  // key, value, what the message says
+
+class BadSetting : public testing::TestWithParam<Bad> {};
+
+TEST_P(BadSetting, IsRefusedByName) {
+  const auto& [key, value, said] = GetParam();
+  const Settings settings{{key, value}};
+  EXPECT_THAT([&] { static_cast<void>(registry().create("mixer", settings)); },
+              ThrowsMessage<InvalidInput>(HasSubstr(said)));
+}
+
+INSTANTIATE_TEST_SUITE_P(Options, BadSetting,
+                         testing::Values(Bad("count", "11", "from 1 to 10"), Bad("count", "0", "count = '0'"),
+                                         Bad("count", "2.5", "whole number"), Bad("count", "", "whole number"),
+                                         Bad("weight", "-1", "at least 0"), Bad("weight", "nan", "weight"),
+                                         Bad("weight", "inf", "weight"), Bad("weight", "1e999", "weight"),
+                                         Bad("loud", "yes", "true | false"), Bad("flavour", "bitter", "sweet | sour"),
+                                         Bad("coutn", "3", "did you mean 'count'")));
+
+TEST(NearestWord, FindsTyposAndNothingFarAway) {
+  EXPECT_EQ(nearest_word("albdeo", {"albedo", "emission"}), "albedo");
+  EXPECT_EQ(nearest_word("zzzzzz", {"albedo", "emission"}), "");
+}
+
+}  // namespace
+}  // namespace isolux
