@@ -21,7 +21,10 @@ struct SkyEnvironment {
   Vec3f ground{0.0f};
 };
 
-/// A latitude-longitude image: row 0 towards `up`, linear radiance, RGB, x fastest. An empty image is an error.
+/// A latitude-longitude image: row 0 towards `up`, linear radiance, RGB, x fastest; read bilinearly, wrapping from side
+/// to side. The middle between the left and the right edge shows world direction x, made perpendicular to `up` (y where
+/// `up` is x or -x); columns turn to the right as seen from within, with `up` upwards: for up = z the image shows, from
+/// left to right, -x, y, x, -y, -x. An empty image is an error.
 struct ImageEnvironment {
   Vec3f up{0.0f, 0.0f, 1.0f};
   int width = 0;
@@ -46,6 +49,7 @@ struct RectangleLight {
   Vec3f radiance{1.0f};
 };
 
+/// A ball that shines outwards.
 struct SphereLight {
   Vec3f center{0.0f};
   float radius = 1.0f;
@@ -76,6 +80,10 @@ struct Scene {
 
 /// True if every colour of the scene is grey: then one channel is enough.
 [[nodiscard]] bool is_grey(const Scene& scene);
+
+/// \throw InvalidInput, naming what and why, for colours that are negative or not finite, albedos above 1, keys that do
+/// not rise, directions and areas of length zero, and images without pixels.
+void require_valid(const Scene& scene);
 
 /// Radiance that arrives from world direction `towards` (unit) where nothing is in the way, light sources apart.
 [[nodiscard]] Vec3f environment_radiance(const Environment& environment, const Vec3& towards);

@@ -1,0 +1,142 @@
+#include <fmt/format.h>
+#include <isolux/core/error.h>
+#include <isolux/core/parallel.h>
+#include <isolux/raytrace_flat/flat_tracer.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+#include <vector>
+
+#include "path_tracer.h"
+
+namespace isolux {
+namespace {
+
+constexpr std::size_t kSitesABlock = 32;
+
+/// One path of a site: the stratum of its first direction and what it brought.
+struct PathValue {
+  std::uint64_t stratum = 0;
+  Vec3 radiance{0.0};
+};
+
+// The bits of two numbers interleaved: neighbours on this curve are mostly neighbours in the square (Morton 1966).
+std::uint64_t morton_place(const UnitPair& pair) {
+  const auto spread = [](double unit) {
+    auto x = std::uint64_t(unit * 0x1p24);
+    x = (x | x << 32) & 0x1F00000000FFFFull;
+    x = (x | x << 16) & 0x1F0000FF0000FFull;
+    x = (x | x << 8) & 0x100F00F00F00F00Full;
+    x = (x | x << 4) & 0x10C30C30C30C30C3ull;
+    return (x | x << 2) & 0x1249249249249249ull;
+  };
+  return spread(pair.u) | spread(pair.v) << 1;
+}
+
+// Squared standard error of the mean, mean over the channels. Plain variance / n would count the differences between
+// far directions, which stratification has removed; differences of neighbours in the order of the strata keep what is
+// left (collapsed strata, Cochran, "Sampling techniques", 1977; successive differences, von Neumann 1941).
+double variance_of_mean(std::vector<PathValue>& paths, int channels) {
+  if (paths.size() < 2) return std::numeric_limits<float>::max();
+  std::sort(paths.begin(), paths.end(), [](const PathValue& a, const PathValue& b) { return a.stratum < b.stratum; });
+  double sum = 0.0;
+  for (std::size_t i = 1; i < paths.size(); ++i) {
+    for (int c = 0; c < channels; ++c) {
+      const double difference = paths[i].radiance[c] - paths[i - 1].radiance[c];
+      sum += difference * difference;
+    }
+  }
+  const auto n = double(paths.size());
+  return sum / (2.0 * (n - 1.0) * n * channels);
+}
+
+void add(TraceCounters& sum, const TraceCounters& part) {
+  sum.rays += part.rays;
+  sum.hits += part.hits;
+  sum.macrocells += part.macrocells;
+  sum.cells += part.cells;
+  sum.cubics += part.cubics;
+}
+
+void require_usable(const Sites& sites, const TraceSettings& settings) {
+  if (sites.isovalues.size() != sites.size() || sites.normals.size() != sites.size()) {
+    throw InvalidInput(fmt::format("{} site positions with {} isovalues and {} normals; there must be one of each",
+                                   sites.size(), sites.isovalues.size(), sites.normals.size()));
+  }
+  if (settings.rays < 1) throw InvalidInput(fmt::format("rays = {}: allowed is 1 and more", settings.rays));
+  if (settings.bounces < kAllBounces)
+    throw InvalidInput(fmt::format("bounces = {}: allowed is -1 (all), 0 and more", settings.bounces));
+}
+
+/// Path tracing in double precision, one ray at a time: the oracle of the faster backends.
+class ScalarTracer final : public FlatTracer {
+ public:
+  struct Options {
+    PathLimits limits;
+
+    void describe(OptionVisitor& option) {
+      option("roulette_depth", limits.roulette_depth,
+             {.min = 0, .max = 1e6, .help = "reflections before Russian roulette may end a path"});
+      option("longest_path", limits.longest_path,
+             {.min = 0, .max = 1e6, .help = "reflections at most, for closed pockets of albedo 1"});
+    }
+  };
+
+  explicit ScalarTracer(const Options& options) : options_(options) {}
+
+  [[nodiscard]] TraceResult trace(const Volume& volume, const Scene& scene, Sites sites, const TraceSettings& settings,
+                                  const Run& run) const override {
+    require_usable(sites, settings);
+    require_valid(scene);
+    TraceResult result;
+    SampleSet& samples = result.samples;
+    samples.sites = std::move(sites);
+    samples.channels = is_grey(scene) ? 1 : 3;
+    samples.radiance.resize(samples.size() * std::size_t(samples.channels));
+    samples.variance.resize(samples.size());
+    const PathTracer tracer(volume, scene, settings, options_.limits);
+    std::vector<TraceCounters> counters(block_count(samples.size(), kSitesABlock));
+    parallel_blocks(samples.size(), kSitesABlock, run, "trace", [&](const Block& block) {
+      for (std::size_t i = block.begin; i < block.end; ++i)
+        light_site(tracer, settings.rays, PathSampler(run.seed, i), i, samples, counters[block.index]);
+    });
+    for (const TraceCounters& part : counters) add(result.counters, part);
+    return result;
+  }
+
+ private:
+  // A site without a normal has no light: e = 0, and the variance says that nothing is known.
+  static void light_site(const PathTracer& tracer, int rays, const PathSampler& numbers, std::size_t site,
+                         SampleSet& samples, TraceCounters& counters) {
+    const Sites& sites = samples.sites;
+    std::vector<PathValue> paths;
+    if (sites.normals[site] != Vec3f(0.0f)) paths.resize(std::size_t(rays));
+    Vec3 sum(0.0);
+    for (std::size_t path = 0; path < paths.size(); ++path) {
+      UnitPair first{};
+      paths[path].radiance = tracer.radiance(Vec3(sites.positions[site]), Vec3(sites.normals[site]),
+                                             sites.isovalues[site], numbers, std::uint32_t(path), first, counters);
+      paths[path].stratum = morton_place(first);
+      sum += paths[path].radiance;
+    }
+    if (!paths.empty()) sum /= double(paths.size());
+    for (int c = 0; c < samples.channels; ++c)
+      samples.radiance[site * std::size_t(samples.channels) + std::size_t(c)] = float(sum[c]);
+    samples.variance[site] =
+        float(std::min(variance_of_mean(paths, samples.channels), double(std::numeric_limits<float>::max())));
+  }
+
+  Options options_;
+};
+
+}  // namespace
+
+namespace backends {
+void scalar(Registry<FlatTracer>& registry) {
+  registry.add<ScalarTracer>("scalar", "path tracing in double precision, one ray at a time; the reference");
+}
+}  // namespace backends
+
+}  // namespace isolux

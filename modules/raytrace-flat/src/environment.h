@@ -1,0 +1,51 @@
+#pragma once
+
+#include <isolux/raytrace_flat/scene.h>
+
+#include <vector>
+
+#include "directions.h"
+
+namespace isolux {
+
+/// An environment made ready for many questions. Owns nothing of the scene, which must outlive it.
+class PreparedEnvironment {
+ public:
+  explicit PreparedEnvironment(const Environment& environment);
+
+  /// Radiance from world direction `towards` (unit).
+  [[nodiscard]] Vec3 radiance(const Vec3& towards) const;
+  /// False where all directions are black.
+  [[nodiscard]] bool shines() const { return shines_; }
+
+  /// A direction drawn for the light of an image, and its density per solid angle.
+  struct Sample {
+    Vec3 towards{0.0};
+    double density = 0.0;
+  };
+  /// True for images: their light is worth looking for.
+  [[nodiscard]] bool has_samples() const { return !row_sums_.empty(); }
+  [[nodiscard]] Sample sample(double u, double v) const;
+  /// The density with which sample() gives this direction.
+  [[nodiscard]] double density(const Vec3& towards) const;
+
+ private:
+  /// Place in the image: columns 0..1 from the left edge, rows 0..1 from the top.
+  struct Place {
+    double column;
+    double row;
+  };
+  [[nodiscard]] Place place(const Vec3& towards) const;
+  [[nodiscard]] Vec3 image_radiance(const Place& place) const;
+  void prepare_image();
+
+  const Environment* environment_;
+  Frame frame_{};  ///< z: up; x: what the image's middle column shows; y: a quarter turn to the left of it
+  bool shines_ = false;
+  // Of patches between pixel centres, where the bilinear interpolant of an image is one piece: (height + 1) rows of
+  // `width`, running sums of luminance times solid angle. Empty unless the environment is an image that shines.
+  std::vector<double> patch_sums_;
+  std::vector<double> row_sums_;
+};
+
+}  // namespace isolux

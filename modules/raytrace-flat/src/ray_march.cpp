@@ -1,0 +1,245 @@
+#include "ray_march.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace isolux {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr std::size_t kNoBrick = std::numeric_limits<std::size_t>::max();
+
+// Below this part of the largest component a direction's component is zero: its inverse would not be finite.
+constexpr double kSmallestComponent = 1e-290;
+
+}  // namespace
+
+/// A ray on its way. Positions and directions are in index space, the direction's largest component is 1.
+struct RayMarch::Ray {
+  double origin[3];
+  double direction[3];
+  double inverse[3];       ///< of the direction, infinite where that is zero
+  double plane_origin[3];  ///< origin, or a place behind every plane where the direction is zero
+  int forward[3];          ///< 1 towards higher indices, else 0
+  int cell[3];
+  std::array<double, 3> position;  ///< at t, exact on the faces that the ray crosses
+  double t = 0.0;
+  double limit = kInfinity;
+  double scale = 1.0;   ///< length of the caller's direction in ours
+  double offset = 0.0;  ///< the caller's t at our t = 0
+  double level = 0.0;
+  double inner = 1.0;            ///< +1 if the side the ray must not enter has the higher values, else -1
+  bool fresh = false;            ///< still at its start on the level set: the root there is known
+  std::size_t brick = kNoBrick;  ///< the fine brick known to be worth entering
+};
+
+/// From the ray's place to the next plane: through a brick that cannot hold the level set, or through one cell.
+struct RayMarch::Step {
+  int shift;
+  int plane[3];
+  double plane_t[3];
+  double t;
+  std::array<double, 3> position;
+};
+
+RayMarch::RayMarch(const Volume& volume)
+    : lattice_(volume.lattice()),
+      data_(volume.values.values().data()),
+      macrocells_(volume),
+      rounding_(0x1p-51 * std::max({lattice_.size.x, lattice_.size.y, lattice_.size.z})) {}
+
+bool RayMarch::make_ray(const Vec3& origin, const Vec3& direction, double limit, Ray& ray) const {
+  const double largest = std::max({std::fabs(direction.x), std::fabs(direction.y), std::fabs(direction.z)});
+  if (!(largest > 0.0) || !std::isfinite(largest)) return false;
+  ray.scale = largest;
+  ray.limit = limit * largest;
+  for (int a = 0; a < 3; ++a) {
+    const double o = std::clamp(origin[a], 0.0, double(lattice_.size[a] - 1));
+    double d = direction[a] / largest;
+    if (std::fabs(d) < kSmallestComponent) d = 0.0;
+    const bool backward = d < 0.0;
+    // A start on a face belongs to the cell that the ray goes into.
+    ray.cell[a] = backward ? int(std::ceil(o)) - 1 : int(o);
+    if (d == 0.0) ray.cell[a] = std::min(ray.cell[a], lattice_.size[a] - 2);
+    if (ray.cell[a] < 0 || ray.cell[a] > lattice_.size[a] - 2) return false;
+    ray.origin[a] = o;
+    ray.position[std::size_t(a)] = o;
+    ray.direction[a] = d;
+    ray.inverse[a] = d == 0.0 ? kInfinity : 1.0 / d;
+    ray.plane_origin[a] = d == 0.0 ? -1.0 : o;
+    ray.forward[a] = backward ? 0 : 1;
+  }
+  return true;
+}
+
+void RayMarch::load(const Ray& ray, CellCorners& corners) const {
+  const float* p = data_ + lattice_.offset(ray.cell[0], ray.cell[1], ray.cell[2]);
+  const std::ptrdiff_t y = lattice_.size.x;
+  const std::ptrdiff_t z = y * lattice_.size.y;
+  corners = {p[0], p[1], p[y], p[y + 1], p[z], p[z + 1], p[y + z], p[y + z + 1]};
+}
+
+std::array<double, 3> RayMarch::place_in_cell(const Ray& ray, const std::array<double, 3>& position) const {
+  return {position[0] - ray.cell[0], position[1] - ray.cell[1], position[2] - ray.cell[2]};
+}
+
+// False where the ray leaves its limit behind.
+bool RayMarch::plan(Ray& ray, Step& step, TraceCounters& counters) const {
+  step.shift = 0;
+  const Macrocells::Level& fine = macrocells_.fine();
+  const std::size_t brick = fine.offset(ray.cell);
+  if (brick != ray.brick) {
+    const auto out_of_reach = [&ray](const Macrocells::Level& level, std::size_t b) {
+      return ray.inner > 0.0 ? double(level.high[b]) < ray.level : double(level.low[b]) > ray.level;
+    };
+    if (out_of_reach(fine, brick)) {
+      const Macrocells::Level& coarse = macrocells_.coarse();
+      step.shift = out_of_reach(coarse, coarse.offset(ray.cell)) ? coarse.shift : fine.shift;
+    } else {
+      ray.brick = brick;
+      ++counters.macrocells;
+    }
+  }
+  step.t = kInfinity;
+  for (int a = 0; a < 3; ++a) {
+    step.plane[a] = ((ray.cell[a] >> step.shift) + ray.forward[a]) << step.shift;
+    step.plane_t[a] = (step.plane[a] - ray.plane_origin[a]) * ray.inverse[a];
+    step.t = std::min(step.t, step.plane_t[a]);
+  }
+  // Roundings must not turn the ray back.
+  step.t = std::max(step.t, ray.t);
+  const double end = std::min(step.t, ray.limit);
+  for (int a = 0; a < 3; ++a) {
+    const double x = ray.origin[a] + end * ray.direction[a];
+    const int low = (ray.cell[a] >> step.shift) << step.shift;
+    const int high = low + (1 << step.shift);
+    step.position[std::size_t(a)] = step.plane_t[a] <= end ? step.plane[a] : std::clamp(x, double(low), double(high));
+  }
+  return ray.t < ray.limit;
+}
+
+// The part of the step at which the level set is met.
+std::optional<double> RayMarch::test_cell(Ray& ray, const Step& step, RootWish wish, TraceCounters& counters) const {
+  ++counters.cells;
+  CellCorners g;
+  load(ray, g);
+  double most = -kInfinity;
+  for (double& v : g) {
+    v = ray.inner * (v - ray.level);
+    most = std::max(most, v);
+  }
+  if (most < 0.0) {
+    ray.fresh = false;
+    return std::nullopt;
+  }
+  const double end = std::min(step.t, ray.limit);
+  if (ray.fresh && end - ray.t <= rounding_) return std::nullopt;
+  ++counters.cubics;
+  const auto b = segment_cubic(g, place_in_cell(ray, ray.position), place_in_cell(ray, step.position));
+  if (!ray.fresh) {
+    if (b[0] >= 0.0) return 0.0;
+    return first_root(b, wish);
+  }
+  const DeflatedRoot root = deflated_root(b);
+  ray.fresh = root.kind == DeflatedRoot::Kind::kFlat;
+  if (root.kind == DeflatedRoot::Kind::kBlocked) return 0.0;
+  if (root.kind == DeflatedRoot::Kind::kHit) return root.s;
+  return std::nullopt;
+}
+
+// False where the ray leaves the box.
+bool RayMarch::advance(Ray& ray, const Step& step) const {
+  ray.t = step.t;
+  ray.position = step.position;
+  for (int a = 0; a < 3; ++a) {
+    int& cell = ray.cell[a];
+    if (step.plane_t[a] <= step.t) {
+      cell = step.plane[a] + ray.forward[a] - 1;
+    } else if (step.shift > 0) {
+      const int low = (cell >> step.shift) << step.shift;
+      const int here = std::clamp(int(step.position[std::size_t(a)]), low, low + (1 << step.shift) - 1);
+      cell = ray.forward[a] != 0 ? std::max(cell, here) : std::min(cell, here);
+    }
+    if (cell < 0 || cell > lattice_.size[a] - 2) return false;
+  }
+  return true;
+}
+
+std::optional<LevelSetHit> RayMarch::march(Ray& ray, RootWish wish, TraceCounters& counters) const {
+  Step step;
+  do {
+    if (!plan(ray, step, counters)) return std::nullopt;
+    if (step.shift > 0) {
+      ray.fresh = false;
+    } else if (const auto s = test_cell(ray, step, wish, counters)) {
+      ++counters.hits;
+      LevelSetHit hit;
+      for (int a = 0; a < 3; ++a)
+        hit.position[a] = (1.0 - *s) * ray.position[std::size_t(a)] + *s * step.position[std::size_t(a)];
+      hit.t = ray.offset + (ray.t + *s * (std::min(step.t, ray.limit) - ray.t)) / ray.scale;
+      return hit;
+    }
+  } while (advance(ray, step));
+  return std::nullopt;
+}
+
+std::optional<LevelSetHit> RayMarch::next_hit(const Vec3& origin, const Vec3& direction, double isovalue,
+                                              OuterSide outer, RootWish wish, double limit,
+                                              TraceCounters& counters) const {
+  ++counters.rays;
+  Ray ray;
+  if (!make_ray(origin, direction, limit, ray)) return std::nullopt;
+  ray.inner = outer == OuterSide::kLower ? 1.0 : -1.0;
+  ray.fresh = true;
+  // A site's isovalue is a float: the ray follows the level set that its start lies on exactly. Where the start is on
+  // {f = isovalue} as well as double precision can tell, it follows that one, so that corners and plateaus of just this
+  // value are met as such.
+  CellCorners corners;
+  load(ray, corners);
+  double largest = 0.0;
+  for (const double v : corners) largest = std::max(largest, std::fabs(v));
+  const double start = cell_value(corners, place_in_cell(ray, ray.position));
+  ray.level = std::fabs(start - isovalue) <= 0x1p-46 * largest ? isovalue : start;
+  return march(ray, wish, counters);
+}
+
+std::optional<LevelSetHit> RayMarch::first_hit(const Vec3& origin, const Vec3& direction, double isovalue,
+                                               TraceCounters& counters) const {
+  ++counters.rays;
+  double enter = 0.0;
+  double leave = kInfinity;
+  int face = -1;
+  for (int a = 0; a < 3; ++a) {
+    const double high = lattice_.size[a] - 1;
+    if (direction[a] == 0.0) {
+      if (!(origin[a] >= 0.0 && origin[a] <= high)) return std::nullopt;
+      continue;
+    }
+    const double near = ((direction[a] > 0.0 ? 0.0 : high) - origin[a]) / direction[a];
+    const double far = ((direction[a] > 0.0 ? high : 0.0) - origin[a]) / direction[a];
+    if (near > enter) {
+      enter = near;
+      face = a;
+    }
+    leave = std::min(leave, far);
+  }
+  if (!(enter <= leave)) return std::nullopt;
+  Vec3 start = origin + enter * direction;
+  if (face >= 0) start[face] = direction[face] > 0.0 ? 0.0 : double(lattice_.size[face] - 1);
+  Ray ray;
+  if (!make_ray(start, direction, kInfinity, ray)) return std::nullopt;
+  ray.offset = enter;
+  ray.level = isovalue;
+  CellCorners corners;
+  load(ray, corners);
+  for (double& v : corners) v -= isovalue;
+  const double value = cell_value(corners, place_in_cell(ray, ray.position));
+  if (value == 0.0) {
+    ++counters.hits;
+    return LevelSetHit{.t = enter, .position = {ray.position[0], ray.position[1], ray.position[2]}};
+  }
+  ray.inner = value < 0.0 ? 1.0 : -1.0;
+  return march(ray, RootWish::kPlace, counters);
+}
+
+}  // namespace isolux

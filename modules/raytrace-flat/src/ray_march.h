@@ -1,0 +1,47 @@
+#pragma once
+
+#include <isolux/core/field.h>
+#include <isolux/raytrace_flat/flat_tracer.h>
+#include <isolux/raytrace_flat/level_set_intersector.h>
+
+#include <array>
+#include <limits>
+#include <optional>
+
+#include "cell_cubic.h"
+#include "macrocells.h"
+
+namespace isolux {
+
+/// The walk of a ray through bricks and cells (a 3D-DDA, Amanatides & Woo 1987) up to its first root. What
+/// LevelSetIntersector and the backend `scalar` share; see LevelSetIntersector for the meaning of the queries.
+class RayMarch {
+ public:
+  explicit RayMarch(const Volume& volume);
+
+  /// \param limit hits beyond this t do not count
+  [[nodiscard]] std::optional<LevelSetHit> next_hit(const Vec3& origin, const Vec3& direction, double isovalue,
+                                                    OuterSide outer, RootWish wish, double limit,
+                                                    TraceCounters& counters) const;
+  [[nodiscard]] std::optional<LevelSetHit> first_hit(const Vec3& origin, const Vec3& direction, double isovalue,
+                                                     TraceCounters& counters) const;
+
+ private:
+  struct Ray;
+  struct Step;
+  [[nodiscard]] bool make_ray(const Vec3& origin, const Vec3& direction, double limit, Ray& ray) const;
+  [[nodiscard]] std::optional<LevelSetHit> march(Ray& ray, RootWish wish, TraceCounters& counters) const;
+  [[nodiscard]] bool plan(Ray& ray, Step& step, TraceCounters& counters) const;
+  [[nodiscard]] std::optional<double> test_cell(Ray& ray, const Step& step, RootWish wish,
+                                                TraceCounters& counters) const;
+  [[nodiscard]] bool advance(Ray& ray, const Step& step) const;
+  void load(const Ray& ray, CellCorners& corners) const;
+  [[nodiscard]] std::array<double, 3> place_in_cell(const Ray& ray, const std::array<double, 3>& position) const;
+
+  Lattice lattice_;
+  const float* data_;
+  Macrocells macrocells_;
+  double rounding_;  ///< what a coordinate in the box can be wrong by
+};
+
+}  // namespace isolux
