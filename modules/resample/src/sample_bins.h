@@ -1,0 +1,81 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstdlib>
+#include <limits>
+#include <span>
+#include <vector>
+
+#include "metric.h"
+#include "neighbours.h"
+
+namespace isolux {
+
+/// Points sorted into cubic bins over the box from 0 to a far corner; those outside go to the nearest bin. Searches
+/// visit shells of bins about the query until no bin beyond can hold anything nearer (Bentley, Weide & Yao, "Optimal
+/// expected-time algorithms for closest point problems", 1980): expected constant time where points are spread evenly.
+class SampleBins {
+ public:
+  SampleBins(std::span<const Point> points, const Point& far_corner, double points_a_bin);
+
+  /// The neighbours of `query` that `limits` asks for, nearest first.
+  template <class Metric>
+  void search(const Point& query, const NeighbourLimits& limits, std::vector<Neighbour>& found) const {
+    NearestNeighbours nearest(limits, found);
+    const std::array<int, 3> centre = bin(query);
+    for (int r = 1;; ++r) {
+      visit_shell<Metric>(query, centre, r, nearest);
+      const float beyond = distance_beyond(query, centre, r);
+      if (beyond == std::numeric_limits<float>::infinity()) break;
+      if (beyond > 0.0f && Metric::axis(beyond) > nearest.worst_reach()) break;
+    }
+    nearest.finish();
+  }
+
+ private:
+  struct Entry {
+    Point point;
+    std::uint32_t sample;
+  };
+
+  [[nodiscard]] std::array<int, 3> bin(const Point& p) const;
+  [[nodiscard]] std::size_t bin_offset(int i, int j, int k) const {
+    return (std::size_t(k) * std::size_t(size_[1]) + std::size_t(j)) * std::size_t(size_[0]) + std::size_t(i);
+  }
+  /// Less than the distance to any point outside the cube of bins of half edge r; infinite if there are none.
+  [[nodiscard]] float distance_beyond(const Point& query, const std::array<int, 3>& centre, int r) const;
+
+  /// Shell r, the first one together with the bin in the middle.
+  template <class Metric>
+  void visit_shell(const Point& query, const std::array<int, 3>& centre, int r, NearestNeighbours& nearest) const {
+    const int k_last = std::min(centre[2] + r, size_[2] - 1);
+    const int j_last = std::min(centre[1] + r, size_[1] - 1);
+    for (int k = std::max(centre[2] - r, 0); k <= k_last; ++k) {
+      for (int j = std::max(centre[1] - r, 0); j <= j_last; ++j) {
+        if (r == 1 || std::abs(j - centre[1]) == r || std::abs(k - centre[2]) == r) {
+          visit_row<Metric>(query, std::max(centre[0] - r, 0), std::min(centre[0] + r, size_[0] - 1), j, k, nearest);
+          continue;
+        }
+        if (centre[0] - r >= 0) visit_row<Metric>(query, centre[0] - r, centre[0] - r, j, k, nearest);
+        if (centre[0] + r < size_[0]) visit_row<Metric>(query, centre[0] + r, centre[0] + r, j, k, nearest);
+      }
+    }
+  }
+
+  template <class Metric>
+  void visit_row(const Point& query, int first, int last, int j, int k, NearestNeighbours& nearest) const {
+    const std::uint32_t end = starts_[bin_offset(last, j, k) + 1];
+    for (std::uint32_t e = starts_[bin_offset(first, j, k)]; e < end; ++e) {
+      nearest.offer(reach<Metric>(query, entries_[e].point), entries_[e].sample);
+    }
+  }
+
+  float side_ = 1.0f;
+  float slack_ = 0.0f;  ///< more than rounding can move a point across a bin's side
+  std::array<int, 3> size_{1, 1, 1};
+  std::vector<std::uint32_t> starts_;  ///< of each bin's entries, and the end; a row of bins is contiguous
+  std::vector<Entry> entries_;
+};
+
+}  // namespace isolux
