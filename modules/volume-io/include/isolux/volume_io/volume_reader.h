@@ -30,7 +30,7 @@ class VolumeReader {
   virtual ~VolumeReader() = default;
 
   /// How sure this reader is that `source` (a path, or `gen:` text) is of its kind: 0 not at all, 1 by its name, 2 by
-  /// its content.
+  /// its content, 3 because the caller says so (`gen:`, ReadOptions::raw).
   [[nodiscard]] virtual int claims(const std::string& source, const ReadOptions& options) const = 0;
   /// Reads it all, converted to float. Voxels may be NaN or infinite and axes 1 wide, as in the file: see
   /// require_usable(). \throw IoError if it cannot be opened or is shorter than its header says; InvalidInput for a

@@ -1,0 +1,108 @@
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <isolux/core/error.h>
+#include <isolux/volume_io/atomic_file.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+
+namespace isolux {
+namespace {
+namespace fs = std::filesystem;
+
+constexpr std::size_t kLongestEnd = 100;
+
+// The file that `path` names once symbolic links are followed, so that a link stays one.
+fs::path real_target(const std::string& path) {
+  std::error_code error;
+  if (!fs::is_symlink(path, error)) return path;
+  const fs::path target = fs::weakly_canonical(path, error);
+  return error ? fs::path(path) : target;
+}
+
+// A file beside `target` that nobody else has, removed unless renamed. Its mode follows the umask.
+class Temporary {
+ public:
+  explicit Temporary(const fs::path& target) : target_(target) {
+    static std::atomic<unsigned> counter{0};
+    const fs::path folder = target.has_parent_path() ? target.parent_path() : fs::path(".");
+    std::error_code error;
+    if (!fs::is_directory(folder, error))
+      throw IoError(fmt::format("{}: there is no folder {}", target.string(), folder.string()));
+    if (fs::is_directory(target, error)) throw IoError(fmt::format("{}: a directory", target.string()));
+    // The name's end stays last: libraries choose the format by it.
+    std::string end = target.filename().string();
+    if (end.size() > kLongestEnd) end.erase(0, end.size() - kLongestEnd);
+    for (int attempt = 0; attempt < 100; ++attempt) {
+      path_ = folder / fmt::format(".isolux-{}-{}-{}", getpid(), counter++, end);
+      const int file = open(path_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+      if (file >= 0) {
+        close(file);
+        return;
+      }
+      if (errno != EEXIST) break;
+    }
+    throw IoError(fmt::format("{}: cannot be written: {}", target.string(), std::strerror(errno)));
+  }
+  Temporary(const Temporary&) = delete;
+  Temporary& operator=(const Temporary&) = delete;
+  ~Temporary() {
+    std::error_code ignored;
+    if (!path_.empty()) fs::remove(path_, ignored);
+  }
+
+  [[nodiscard]] const fs::path& path() const { return path_; }
+
+  void rename_to_target() {
+    std::error_code error;
+    fs::rename(path_, target_, error);
+    if (error) throw IoError(fmt::format("{}: cannot be written: {}", target_.string(), error.message()));
+    path_.clear();
+  }
+
+ private:
+  fs::path target_;
+  fs::path path_;
+};
+
+void fill(const fs::path& file, const std::string& path, const std::function<void(std::ostream&)>& write) {
+  std::ofstream stream(file, std::ios::binary | std::ios::trunc);
+  if (!stream) throw IoError(fmt::format("{}: cannot be written: {}", path, std::strerror(errno)));
+  errno = 0;
+  write(stream);
+  stream.close();
+  if (!stream)
+    throw IoError(
+        fmt::format("{}: writing failed: {}", path, errno == 0 ? "the disk may be full" : std::strerror(errno)));
+}
+
+// A pipe or a device (/dev/stdout, /dev/null) is written to, never replaced.
+bool is_special(const fs::path& target) {
+  std::error_code error;
+  const fs::file_status status = fs::status(target, error);
+  return fs::exists(status) && !fs::is_regular_file(status) && !fs::is_directory(status);
+}
+
+}  // namespace
+
+void write_atomically(const std::string& path, const std::function<void(std::ostream&)>& write) {
+  const fs::path target = real_target(path);
+  if (is_special(target)) return fill(target, path, write);
+  Temporary temporary(target);
+  fill(temporary.path(), path, write);
+  temporary.rename_to_target();
+}
+
+void write_atomically_by_name(const std::string& path, const std::function<void(const std::string& temporary)>& write) {
+  const fs::path target = real_target(path);
+  if (is_special(target)) return write(target.string());
+  Temporary temporary(target);
+  write(temporary.path().string());
+  temporary.rename_to_target();
+}
+
+}  // namespace isolux

@@ -1,0 +1,121 @@
+#include "files.h"
+#include "nrrd_header.h"
+
+#include <fmt/format.h>
+#include <isolux/core/error.h>
+
+#include <charconv>
+#include <fstream>
+
+namespace isolux::detail {
+namespace {
+
+// Offset of the byte behind `lines` more newlines.
+std::uint64_t skip_lines(const NrrdHeader& header) {
+  std::ifstream file(header.data_file, std::ios::binary);
+  file.seekg(std::streamoff(header.data_offset));
+  std::uint64_t offset = header.data_offset;
+  for (std::uint64_t lines = 0; lines < header.line_skip; ++offset) {
+    const int c = file.get();
+    if (c == std::ifstream::traits_type::eof())
+      throw IoError(
+          fmt::format("{}: the data end after {} of {} lines to skip", header.data_file, lines, header.line_skip));
+    if (c == '\n') ++lines;
+  }
+  return offset;
+}
+
+std::vector<float> read_raw(const NrrdHeader& header, std::uint64_t offset, std::uint64_t count, const Run& run) {
+  const std::uint64_t size = require_file(header.data_file);
+  const std::uint64_t needed = count * bytes_per_scalar(header.layout.type);
+  const std::uint64_t skip = header.byte_skip > 0 ? std::uint64_t(header.byte_skip) : 0;
+  const std::uint64_t behind = size - std::min(size, offset);
+  const std::uint64_t found = behind - std::min(behind, skip);
+  // A foreign file whose header is skipped may have more behind its data; else the sizes must be right.
+  const bool foreign = header.byte_skip != 0 || header.line_skip != 0;
+  if (found < needed || (found > needed && !foreign))
+    throw IoError(fmt::format("{}: {} bytes of data expected, {} found", header.data_file, needed, found));
+  const std::uint64_t begin = header.byte_skip < 0 ? size - needed : offset + skip;
+  return decode_scalars(*file_source(header.data_file, begin), header.layout, count, header.data_file, run);
+}
+
+std::vector<float> read_gzip(const NrrdHeader& header, std::uint64_t offset, std::uint64_t count, const Run& run) {
+  const std::uint64_t size = require_file(header.data_file);
+  const std::uint64_t needed = count * bytes_per_scalar(header.layout.type);
+  if (needed / kLargestInflation > size)
+    throw IoError(fmt::format("{}: {} bytes of data expected, more than {} compressed bytes can hold", header.data_file,
+                              needed, size));
+  const auto source = gzip_source(header.data_file, offset);
+  skip_bytes(*source, std::uint64_t(header.byte_skip), header.data_file);
+  auto values = decode_scalars(*source, header.layout, count, header.data_file, run);
+  std::byte more{};
+  if (source->read(std::span(&more, 1)) != 0)
+    throw IoError(fmt::format("{}: {} bytes of data expected, more found", header.data_file, needed));
+  return values;
+}
+
+// Numbers separated by blanks or commas.
+class NumberText {
+ public:
+  NumberText(const NrrdHeader& header, std::uint64_t offset) : path_(header.data_file), file_(path_, std::ios::binary) {
+    file_.seekg(std::streamoff(offset));
+  }
+  // The next word; empty at the end.
+  const std::string& next() {
+    word_.clear();
+    for (int c = file_.get(); c != std::ifstream::traits_type::eof(); c = file_.get()) {
+      const bool between = c == ' ' || c == '\n' || c == '\r' || c == '\t' || c == ',' || c == '\f' || c == '\v';
+      if (between && !word_.empty()) break;
+      if (!between) word_ += char(c);
+      if (word_.size() > 400) throw IoError(fmt::format("{}: the data hold no numbers as text", path_));
+    }
+    return word_;
+  }
+
+ private:
+  std::string path_;
+  std::ifstream file_;
+  std::string word_;
+};
+
+std::vector<float> read_text(const NrrdHeader& header, std::uint64_t offset, std::uint64_t count, const Run& run) {
+  const std::uint64_t size = require_file(header.data_file);
+  if (count > size) throw IoError(fmt::format("{}: {} numbers expected in {} bytes", header.data_file, count, size));
+  NumberText text(header, offset + std::uint64_t(header.byte_skip));
+  std::vector<float> values;
+  values.reserve(count);
+  for (std::string word = text.next(); !word.empty(); word = text.next()) {
+    double value = 0.0;
+    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
+    if (error != std::errc() || end != word.data() + word.size())
+      throw IoError(fmt::format("{}: '{}', value {} of the data, is not a number", header.data_file, word.substr(0, 40),
+                                values.size()));
+    if (values.size() == count)
+      throw IoError(fmt::format("{}: {} numbers expected, more found", header.data_file, count));
+    values.push_back(float(value));
+    if (values.size() % 65536 == 0) throw_if_stopped(run);
+  }
+  if (values.size() < count)
+    throw IoError(fmt::format("{}: {} numbers expected, {} found", header.data_file, count, values.size()));
+  return values;
+}
+
+}  // namespace
+
+std::vector<float> read_nrrd_values(const NrrdHeader& header, const Run& run) {
+  std::vector<std::int64_t> sizes;
+  for (const auto& axis : header.axes) sizes.push_back(axis.size);
+  const std::uint64_t count = checked_count(header.path, sizes, bytes_per_scalar(header.layout.type));
+  const std::uint64_t offset = skip_lines(header);
+  switch (header.encoding) {
+    case NrrdEncoding::kRaw:
+      return read_raw(header, offset, count, run);
+    case NrrdEncoding::kGzip:
+      return read_gzip(header, offset, count, run);
+    case NrrdEncoding::kText:
+      return read_text(header, offset, count, run);
+  }
+  throw InvalidInput(fmt::format("{}: unknown encoding", header.path));
+}
+
+}  // namespace isolux::detail

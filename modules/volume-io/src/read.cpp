@@ -1,0 +1,52 @@
+#include "files.h"
+
+#include <fmt/format.h>
+#include <isolux/core/error.h>
+#include <isolux/volume_io/read.h>
+
+#include <new>
+#include <stdexcept>
+
+namespace isolux {
+namespace {
+
+constexpr std::string_view kFormats =
+    "gen:NAME[:N], NRRD (.nrrd, .nhdr), NIfTI (.nii, .nii.gz), MetaImage (.mha, .mhd), MRC (.mrc, .map), legacy VTK "
+    "(.vtk), TIFF stacks, folders of DICOM slices, and name_WxHxD_type.raw";
+
+}  // namespace
+
+Volume read_volume(const std::string& source, const ReadOptions& options, const Run& run,
+                   const Registry<VolumeReader>& registry) {
+  std::unique_ptr<VolumeReader> best;
+  int best_claim = 0;
+  std::string missing;
+  for (const auto& info : registry.backends()) {
+    if (!info.unavailable.empty()) {
+      missing += fmt::format("; {}: {}", info.name, info.unavailable);
+      continue;
+    }
+    auto reader = registry.create(info.name);
+    const int claim = reader->claims(source, options);
+    if (claim <= best_claim) continue;
+    best = std::move(reader);
+    best_claim = claim;
+  }
+  if (best == nullptr) {
+    if (!detail::is_directory(source)) (void)detail::require_file(source);
+    throw InvalidInput(fmt::format("{}: not a volume that can be read: known are {}{}", source, kFormats, missing));
+  }
+  try {
+    return best->read(source, options, run);
+  } catch (const std::bad_alloc&) {
+    throw IoError(fmt::format("{}: the memory does not suffice for so many voxels", source));
+  } catch (const std::length_error&) {
+    throw IoError(fmt::format("{}: the memory does not suffice for so many voxels", source));
+  }
+}
+
+Volume read_volume(const std::string& source, const ReadOptions& options, const Run& run) {
+  return read_volume(source, options, run, readers());
+}
+
+}  // namespace isolux

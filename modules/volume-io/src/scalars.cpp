@@ -1,0 +1,136 @@
+#include "scalars.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <isolux/core/error.h>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <type_traits>
+
+namespace isolux::detail {
+namespace {
+
+static_assert(std::endian::native == std::endian::little, "x86-64 and little-endian Arm are what isolux is built for");
+constexpr std::size_t kChunk = 1 << 16;
+
+// Calls f with a value of the C++ type that `type` names.
+template <class F>
+auto with_type(ScalarType type, const F& f) {
+  switch (type) {
+    case ScalarType::kInt8:
+      return f(std::int8_t{});
+    case ScalarType::kUint8:
+      return f(std::uint8_t{});
+    case ScalarType::kInt16:
+      return f(std::int16_t{});
+    case ScalarType::kUint16:
+      return f(std::uint16_t{});
+    case ScalarType::kInt32:
+      return f(std::int32_t{});
+    case ScalarType::kUint32:
+      return f(std::uint32_t{});
+    case ScalarType::kInt64:
+      return f(std::int64_t{});
+    case ScalarType::kUint64:
+      return f(std::uint64_t{});
+    case ScalarType::kFloat32:
+      return f(float{});
+    case ScalarType::kFloat64:
+      return f(double{});
+  }
+  throw InvalidInput("unknown scalar type");
+}
+
+template <class T>
+void decode_chunk(std::byte* bytes, std::size_t count, bool big_endian, float* out) {
+  if (big_endian && sizeof(T) > 1) {
+    for (std::size_t i = 0; i < count; ++i) std::reverse(bytes + i * sizeof(T), bytes + (i + 1) * sizeof(T));
+  }
+  for (std::size_t i = 0; i < count; ++i) {
+    T value;
+    std::memcpy(&value, bytes + i * sizeof(T), sizeof(T));
+    out[i] = float(value);
+  }
+}
+
+template <class T>
+T encode_one(float value, std::size_t index) {
+  if constexpr (std::is_floating_point_v<T>) {
+    return T(value);
+  } else {
+    constexpr T kLow = std::numeric_limits<T>::min();
+    constexpr T kHigh = std::numeric_limits<T>::max();
+    if (!(value >= float(kLow) && value <= float(kHigh)) || std::floor(value) != value) {
+      throw InvalidInput(fmt::format("voxel {} is {}, which no {}-byte {}signed integer holds; store it as float32",
+                                     index, value, sizeof(T), std::is_signed_v<T> ? "" : "un"));
+    }
+    // The limits of wide types are not floats: the nearest float may lie just beyond.
+    if (value >= float(kHigh)) return kHigh;
+    return T(value);
+  }
+}
+
+}  // namespace
+
+std::uint64_t checked_count(const std::string& path, std::span<const std::int64_t> sizes, std::size_t bytes_per_value) {
+  constexpr auto kMost = std::uint64_t(std::numeric_limits<std::int64_t>::max());
+  std::uint64_t count = 1;
+  for (const std::int64_t size : sizes) {
+    if (size < 1 || size > std::numeric_limits<int>::max())
+      throw InvalidInput(fmt::format("{}: sizes {}: allowed is 1 to {} an axis", path, fmt::join(sizes, " "),
+                                     std::numeric_limits<int>::max()));
+    if (count > kMost / bytes_per_value / std::uint64_t(size))
+      throw InvalidInput(
+          fmt::format("{}: sizes {}: their product does not fit in 63 bits", path, fmt::join(sizes, " ")));
+    count *= std::uint64_t(size);
+  }
+  return count;
+}
+
+std::vector<float> decode_scalars(ByteSource& source, const ScalarLayout& layout, std::uint64_t count,
+                                  const std::string& path, const Run& run) {
+  const std::size_t width = bytes_per_scalar(layout.type);
+  std::vector<float> values;
+  // Reserved memory is touched only as the data come in.
+  values.reserve(count);
+  std::vector<std::byte> bytes(std::min<std::uint64_t>(count, kChunk) * width);
+  for (std::uint64_t done = 0; done < count;) {
+    throw_if_stopped(run);
+    const std::size_t wanted = std::min<std::uint64_t>(kChunk, count - done);
+    const std::size_t got = source.read(std::span(bytes).first(wanted * width));
+    if (got < wanted * width) {
+      throw IoError(fmt::format("{}: the data are too short: {} bytes expected, {} found", path, count * width,
+                                done * width + got));
+    }
+    values.resize(done + wanted);
+    with_type(layout.type, [&](auto zero) {
+      decode_chunk<decltype(zero)>(bytes.data(), wanted, layout.big_endian, values.data() + done);
+    });
+    done += wanted;
+    if (run.progress) run.progress("read", double(done) / double(count));
+  }
+  return values;
+}
+
+void encode_scalars(std::span<const float> values, ScalarType type,
+                    const std::function<void(std::span<const std::byte>)>& sink) {
+  const std::size_t width = bytes_per_scalar(type);
+  std::vector<std::byte> bytes(std::min(values.size(), kChunk) * width);
+  for (std::size_t begin = 0; begin < values.size(); begin += kChunk) {
+    const std::size_t count = std::min(kChunk, values.size() - begin);
+    with_type(type, [&](auto zero) {
+      using T = decltype(zero);
+      for (std::size_t i = 0; i < count; ++i) {
+        const T value = encode_one<T>(values[begin + i], begin + i);
+        std::memcpy(bytes.data() + i * sizeof(T), &value, sizeof(T));
+      }
+    });
+    sink(std::span(bytes).first(count * width));
+  }
+}
+
+}  // namespace isolux::detail
