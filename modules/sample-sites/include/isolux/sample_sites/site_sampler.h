@@ -11,9 +11,9 @@
 namespace isolux {
 
 struct SiteRequest {
-  Lattice texels;                       ///< the grid that the samples are for
-  std::size_t count = 0;                ///< sites wanted; 0: one a texel. Samplers that sit at texels ignore it
-  std::optional<ValueRange> isovalues;  ///< sites only on level sets within
+  Lattice texels{};                       ///< the grid that the samples are for
+  std::size_t count = 0;                  ///< sites wanted; 0: one a texel. Samplers that sit at texels ignore it
+  std::optional<ValueRange> isovalues{};  ///< sites only on level sets within
   OuterSide outer = OuterSide::kLower;
   GradientKind gradient = GradientKind::kCentralDifferences;
 };
