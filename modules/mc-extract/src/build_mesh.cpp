@@ -15,7 +15,7 @@ constexpr Index kNone = std::numeric_limits<Index>::max();
 
 /// Corner c = 3 t + i of triangle t stands for the half-edge from its i-th vertex to the next.
 struct Corners {
-  const std::vector<Triangle>& triangles;
+  const LargeVector<Triangle>& triangles;
   [[nodiscard]] Index count() const { return Index(3 * triangles.size()); }
   [[nodiscard]] Index from(Index c) const { return triangles[c / 3][c % 3]; }
   [[nodiscard]] Index to(Index c) const { return triangles[c / 3][(c + 1) % 3]; }
@@ -112,6 +112,34 @@ IsoMesh build_mesh(const IndexedMesh& indexed) {
   return mesh;
 }
 
+namespace {
+
+/// Adds each face's area vector to its vertices and lets `assign(vertex, unit normal)` have the sums' directions.
+template <class Position, class Assign>
+void sum_face_normals(std::size_t vertices, std::size_t faces, const auto& corners, const Position& position,
+                      const Assign& assign) {
+  std::vector<Vec3> sums(vertices, Vec3(0.0));
+  for (std::size_t f = 0; f < faces; ++f) {
+    const Triangle t = corners(f);
+    const Vec3 a = position(t[0]);
+    const Vec3 area = glm::cross(position(t[1]) - a, position(t[2]) - a);
+    for (const Index v : t) sums[v] += area;
+  }
+  for (std::size_t v = 0; v < vertices; ++v) {
+    const double length = glm::length(sums[v]);
+    if (length > 0.0 && length < std::numeric_limits<double>::infinity()) assign(Index(v), Vec3f(sums[v] / length));
+  }
+}
+
+Triangle face_corners(const IsoMesh& mesh, std::size_t face) {
+  const HalfedgeHandle first = mesh.halfedge_handle(FaceHandle(int(face)));
+  const HalfedgeHandle second = mesh.next_halfedge_handle(first);
+  return {Index(mesh.from_vertex_handle(first).idx()), Index(mesh.to_vertex_handle(first).idx()),
+          Index(mesh.to_vertex_handle(second).idx())};
+}
+
+}  // namespace
+
 IndexedMesh indexed_mesh(const IsoMesh& mesh) {
   IndexedMesh result;
   result.positions.reserve(mesh.n_vertices());
@@ -123,30 +151,26 @@ IndexedMesh indexed_mesh(const IsoMesh& mesh) {
     result.positions.emplace_back(p[0], p[1], p[2]);
     result.normals.emplace_back(n[0], n[1], n[2]);
   }
-  for (const auto f : mesh.faces()) {
-    // A face's half-edge ends at its second vertex, as it was built.
-    const HalfedgeHandle first = mesh.halfedge_handle(f);
-    const HalfedgeHandle second = mesh.next_halfedge_handle(first);
-    const HalfedgeHandle third = mesh.next_halfedge_handle(second);
-    result.triangles.push_back({Index(mesh.to_vertex_handle(third).idx()), Index(mesh.to_vertex_handle(first).idx()),
-                                Index(mesh.to_vertex_handle(second).idx())});
-  }
+  for (std::size_t f = 0; f < mesh.n_faces(); ++f) result.triangles.push_back(face_corners(mesh, f));
   return result;
 }
 
 void set_face_normals(IndexedMesh& mesh) {
-  std::vector<Vec3> sums(mesh.positions.size(), Vec3(0.0));
-  for (const Triangle& t : mesh.triangles) {
-    const Vec3 a(mesh.positions[t[0]]);
-    const Vec3 b(mesh.positions[t[1]]);
-    const Vec3 c(mesh.positions[t[2]]);
-    const Vec3 area = glm::cross(b - a, c - a);
-    for (const Index v : t) sums[v] += area;
-  }
-  for (std::size_t v = 0; v < sums.size(); ++v) {
-    const double length = glm::length(sums[v]);
-    if (length > 0.0) mesh.normals[v] = Vec3f(sums[v] / length);
-  }
+  sum_face_normals(
+      mesh.positions.size(), mesh.triangles.size(), [&](std::size_t f) { return mesh.triangles[f]; },
+      [&](Index v) { return Vec3(mesh.positions[v]); }, [&](Index v, const Vec3f& n) { mesh.normals[v] = n; });
+}
+
+void set_face_normals(IsoMesh& mesh) {
+  sum_face_normals(
+      mesh.n_vertices(), mesh.n_faces(), [&](std::size_t f) { return face_corners(mesh, f); },
+      [&](Index v) {
+        const auto& p = mesh.point(VertexHandle(int(v)));
+        return Vec3(p[0], p[1], p[2]);
+      },
+      [&](Index v, const Vec3f& n) {
+        mesh.set_normal(VertexHandle(int(v)), {n.x, n.y, n.z});
+      });
 }
 
 }  // namespace isolux::mc

@@ -16,5 +16,6 @@ namespace isolux::mc {
 /// Replaces the normals by the area-weighted means of the adjacent faces' (their cross products are summed). A vertex
 /// whose faces cancel keeps the one it had.
 void set_face_normals(IndexedMesh& mesh);
+void set_face_normals(IsoMesh& mesh);
 
 }  // namespace isolux::mc

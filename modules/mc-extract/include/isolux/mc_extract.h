@@ -3,5 +3,7 @@
 
 #include <isolux/mc_extract/extractor.h>
 #include <isolux/mc_extract/indexed_mesh.h>
+#include <isolux/mc_extract/iso_extractor.h>
 #include <isolux/mc_extract/iso_mesh.h>
+#include <isolux/mc_extract/large_vector.h>
 #include <isolux/mc_extract/write_mesh.h>

@@ -1,0 +1,77 @@
+#include "case_table.h"
+
+#include <algorithm>
+#include <cassert>
+#include <map>
+#include <utility>
+#include <vector>
+
+#include "cell_polygons.h"
+#include "cube.h"
+
+namespace isolux::mc {
+
+namespace {
+
+/// Where the two half-edges of an edge between two cube edges' vertices are found.
+struct HalfEdgePlace {
+  int slot;
+  int half;
+};
+using EdgePlaces = std::map<std::pair<int, int>, HalfEdgePlace>;
+
+std::pair<int, int> unordered(int a, int b) { return std::minmax({a, b}); }
+
+EdgePlaces places_on_faces(const std::vector<CellPolygon>& polygons) {
+  EdgePlaces places;
+  for (const CellPolygon& polygon : polygons) {
+    for (std::size_t i = 0; i < polygon.size(); ++i) {
+      const PolygonStep& step = polygon[i];
+      const int next = polygon[(i + 1) % polygon.size()].edge;
+      const bool upper_cell = step.face % 2 == 0;  // the face is this cell's lower one
+      places[unordered(step.edge, next)] = {.slot = step.face, .half = 2 * step.rank + (upper_cell ? 1 : 0)};
+    }
+  }
+  return places;
+}
+
+CellCase make_case(int inside, CaseTable::Winding winding) {
+  CellCase result;
+  for (int e = 0; e < 12; ++e) result.crossed[e] = std::uint8_t(crossed_edges(inside) >> e & 1);
+  for (int f = 0; f < 6; ++f) result.segments[f] = std::uint8_t(face_segments(inside, f));
+  const std::vector<CellPolygon> polygons = cell_polygons(inside, 0);
+  EdgePlaces places = places_on_faces(polygons);
+  for (const CellPolygon& polygon : polygons) {
+    for (EdgeTriangle triangle : triangulate(polygon)) {
+      if (winding == CaseTable::Winding::kInwards) std::swap(triangle[1], triangle[2]);
+      for (int i = 0; i < 3; ++i) {
+        const std::size_t corner = std::size_t(3 * result.triangles + i);
+        assert(corner < result.vertex.size());
+        result.vertex[corner] = std::uint8_t(triangle[i]);
+        if (triangle[i] % 4 == 0) result.owned[triangle[i] / 4] = std::int8_t(corner);
+        const auto [place, is_new] = places.try_emplace(unordered(triangle[i], triangle[(i + 1) % 3]),
+                                                        HalfEdgePlace{.slot = 6, .half = 2 * result.inner_edges});
+        if (is_new) ++result.inner_edges;
+        result.slot[corner] = std::uint8_t(place->second.slot);
+        result.half[corner] = std::uint8_t(place->second.half);
+        if (place->second.slot == 6) ++place->second.half;  // the next one to meet this diagonal is its other half
+      }
+      ++result.triangles;
+    }
+  }
+  return result;
+}
+
+}  // namespace
+
+CaseTable::CaseTable(Winding winding) {
+  for (int inside = 0; inside < 256; ++inside) cases_[inside] = make_case(inside, winding);
+}
+
+const CaseTable& case_table(CaseTable::Winding winding) {
+  static const CaseTable kOutwards(CaseTable::Winding::kOutwards);
+  static const CaseTable kInwards(CaseTable::Winding::kInwards);
+  return winding == CaseTable::Winding::kOutwards ? kOutwards : kInwards;
+}
+
+}  // namespace isolux::mc

@@ -1,0 +1,111 @@
+#pragma once
+
+#include <isolux/core/vec.h>
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+#include "level_set.h"
+
+/// What the passes of the row-wise marching cubes share. One bit a voxel says whether it is inside; 64 voxels of a row
+/// are a *word*. A grid point owns the three edges that leave it upwards, the three faces that have it as their lowest
+/// corner and the cell above it, so a *slab* k is all that the grid points of plane k own. Numbers of vertices,
+/// triangles and edges run along rows: a cell finds those it needs by counters that run along the four rows around it,
+/// with no search. After Schroeder, Maynard & Geveci, "Flying edges" (LDAV 2015), with bits in place of their edge
+/// cases.
+namespace isolux::mc {
+
+/// For each kind of thing its number: within a slab (of a row's first) or in the mesh (of a slab's first).
+struct Counts {
+  std::uint32_t vertex_x = 0;  ///< vertices on edges along x, y, z
+  std::uint32_t vertex_y = 0;
+  std::uint32_t vertex_z = 0;
+  std::uint32_t face_x = 0;  ///< mesh edges on faces across x, y, z
+  std::uint32_t face_y = 0;
+  std::uint32_t face_z = 0;
+  std::uint32_t inner = 0;  ///< mesh edges inside cells
+  std::uint32_t triangle = 0;
+};
+
+/// One slab's part of the work: how many words of it hold anything, how many things, and their first numbers.
+struct Slab {
+  std::uint32_t active_words = 0;
+  Counts total;
+  Counts first;
+};
+
+enum class Connectivity : std::uint8_t {
+  kIndexed,   ///< triangles of vertex numbers
+  kHalfEdges  ///< numbers for mesh edges too
+};
+
+/// Views of the grid and of the extractor's buffers.
+struct MarchState {
+  const float* values = nullptr;
+  int nx = 0;
+  int ny = 0;
+  int nz = 0;
+  int words = 0;  ///< a row
+
+  float isovalue = 0.0f;
+  OuterSide outer = OuterSide::kLower;
+
+  std::uint64_t* bits = nullptr;    ///< [nz][ny][words], and one word more
+  Counts* rows = nullptr;           ///< [nz][ny], of rows with an active word: numbers within the slab
+  std::uint32_t* active = nullptr;  ///< [nz][ny * words]: a slab's words that hold anything, row * words + word, rising
+  Slab* slabs = nullptr;            ///< [nz]
+
+  [[nodiscard]] const std::uint64_t* row_bits(int j, int k) const {
+    return bits + (std::size_t(k) * std::size_t(ny) + std::size_t(j)) * std::size_t(words);
+  }
+  [[nodiscard]] std::uint64_t* row_bits(int j, int k) {
+    return bits + (std::size_t(k) * std::size_t(ny) + std::size_t(j)) * std::size_t(words);
+  }
+  [[nodiscard]] const float* row_values(int j, int k) const {
+    return values + (std::size_t(k) * std::size_t(ny) + std::size_t(j)) * std::size_t(nx);
+  }
+  [[nodiscard]] std::uint32_t* slab_active(int k) const { return active + std::size_t(k) * std::size_t(ny * words); }
+  [[nodiscard]] Counts* slab_rows(int k) const { return rows + std::size_t(k) * std::size_t(ny); }
+  /// Bit i is set where grid point 64 word + i has a cell above it along x.
+  [[nodiscard]] std::uint64_t cell_mask(int word) const {
+    const int cells = nx - 1 - 64 * word;
+    return cells >= 64 ? ~std::uint64_t(0) : cells <= 0 ? 0 : (std::uint64_t(1) << cells) - 1;
+  }
+  /// The word moved by one voxel: bit i is the inside bit of grid point 64 word + i + 1.
+  [[nodiscard]] std::uint64_t next_bits(const std::uint64_t* row, int word) const {
+    return row[word] >> 1 | (word + 1 < words ? row[word + 1] << 63 : 0);
+  }
+};
+
+/// The bits of 64 cells' corners: in `here[y + 2 z]` of the corners at their low x, in `next` at their high x. Rows
+/// beyond the grid repeat the last one, so that nothing is crossed towards them.
+struct WordBits {
+  std::array<std::uint64_t, 4> here;
+  std::array<std::uint64_t, 4> next;
+
+  WordBits(const MarchState& march, int j, int k, int word) {
+    for (int r = 0; r < 4; ++r) {
+      const int row = (r & 1) != 0 && j + 1 < march.ny ? j + 1 : j;
+      const int plane = r >= 2 && k + 1 < march.nz ? k + 1 : k;
+      const std::uint64_t* bits = march.row_bits(row, plane);
+      here[r] = bits[word];
+      next[r] = march.next_bits(bits, word);
+    }
+  }
+  /// Cells of `mask` that are neither all inside nor all outside.
+  [[nodiscard]] std::uint64_t mixed(std::uint64_t mask) const {
+    const std::uint64_t any = here[0] | here[1] | here[2] | here[3] | next[0] | next[1] | next[2] | next[3];
+    const std::uint64_t all = here[0] & here[1] & here[2] & here[3] & next[0] & next[1] & next[2] & next[3];
+    return any & ~all & mask;
+  }
+  /// The case of cell i: bit c for corner c.
+  [[nodiscard]] unsigned corners(int i) const {
+    unsigned inside = 0;
+    for (int r = 0; r < 4; ++r)
+      inside |= unsigned(here[r] >> i & 1) << (2 * r) | unsigned(next[r] >> i & 1) << (2 * r + 1);
+    return inside;
+  }
+};
+
+}  // namespace isolux::mc

@@ -1,0 +1,64 @@
+#include "openmesh_memory.h"
+
+#include <cstdint>
+
+#ifdef __linux__
+#include <sys/mman.h>
+#endif
+
+namespace isolux::mc {
+
+namespace {
+
+static_assert(sizeof(IsoMesh::Halfedge) == sizeof(HalfEdgeRecord));
+static_assert(sizeof(IsoMesh::Edge) == 2 * sizeof(HalfEdgeRecord));
+static_assert(sizeof(IsoMesh::Vertex) == sizeof(std::int32_t) && sizeof(IsoMesh::Face) == sizeof(std::int32_t));
+static_assert(sizeof(IsoMesh::Point) == 3 * sizeof(float) && sizeof(IsoMesh::Normal) == 3 * sizeof(float));
+
+/// Asks for huge pages for memory that is reserved but not yet touched.
+void advise_huge_pages(void* memory, std::size_t bytes) {
+#ifdef __linux__
+  constexpr std::uintptr_t kHugePage = std::uintptr_t(2) << 20;
+  const auto begin = (reinterpret_cast<std::uintptr_t>(memory) + kHugePage - 1) / kHugePage * kHugePage;
+  const auto end = (reinterpret_cast<std::uintptr_t>(memory) + bytes) / kHugePage * kHugePage;
+  if (begin < end) madvise(reinterpret_cast<void*>(begin), end - begin, MADV_HUGEPAGE);  // NOLINT: an address
+#else
+  (void)memory;
+  (void)bytes;
+#endif
+}
+
+MeshMemory memory_of(IsoMesh& mesh) {
+  MeshMemory memory;
+  const OpenMesh::VertexHandle v(0);
+  memory.connectivity.half_edges = reinterpret_cast<HalfEdgeRecord*>(&mesh.halfedge(OpenMesh::HalfedgeHandle(0)));
+  memory.connectivity.vertex_half_edge = reinterpret_cast<std::int32_t*>(&mesh.vertex(v));
+  memory.connectivity.face_half_edge = reinterpret_cast<std::int32_t*>(&mesh.face(OpenMesh::FaceHandle(0)));
+  memory.positions = &mesh.point(v)[0];
+  memory.normals = &mesh.property(mesh.vertex_normals_pph(), v)[0];
+  return memory;
+}
+
+}  // namespace
+
+MeshMemory resize_mesh(IsoMesh& mesh, std::size_t vertices, std::size_t edges, std::size_t faces) {
+  if (faces == 0) {
+    mesh.resize(0, 0, 0);
+    return {};
+  }
+  if (mesh.n_vertices() == 0) {
+    // One item shows where the reserved memory lies, before anything but its first page is touched.
+    mesh.reserve(vertices, edges, faces);
+    mesh.resize(1, 1, 1);
+    const MeshMemory reserved = memory_of(mesh);
+    advise_huge_pages(reserved.connectivity.half_edges, edges * sizeof(IsoMesh::Edge));
+    advise_huge_pages(reserved.connectivity.vertex_half_edge, vertices * sizeof(IsoMesh::Vertex));
+    advise_huge_pages(reserved.connectivity.face_half_edge, faces * sizeof(IsoMesh::Face));
+    advise_huge_pages(reserved.positions, vertices * sizeof(IsoMesh::Point));
+    advise_huge_pages(reserved.normals, vertices * sizeof(IsoMesh::Normal));
+  }
+  mesh.resize(vertices, edges, faces);
+  return memory_of(mesh);
+}
+
+}  // namespace isolux::mc

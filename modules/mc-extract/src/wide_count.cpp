@@ -1,0 +1,192 @@
+#include <algorithm>
+#include <bit>
+#include <limits>
+
+#include "wide_kernels.h"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "wide_count.cpp"
+#include <hwy/foreach_target.h>
+// After it, as Highway wants.
+#include <hwy/highway.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace isolux::mc {
+namespace HWY_NAMESPACE {
+namespace {
+
+namespace hn = hwy::HWY_NAMESPACE;
+
+using Floats = hn::ScalableTag<float>;
+
+/// The inside bits of one vector of values.
+template <class Vector>
+std::uint64_t inside_bits(const Floats d, const Vector value, const Vector isovalue, OuterSide outer) {
+  const auto inside = outer == OuterSide::kLower ? hn::Ge(value, isovalue) : hn::Le(value, isovalue);
+  alignas(8) std::uint8_t bytes[8] = {};
+  hn::StoreMaskBits(d, inside, bytes);
+  if (hn::Lanes(d) <= 8) return bytes[0];
+  std::uint64_t bits = 0;
+  for (std::size_t b = 0; b < hn::Lanes(d) / 8; ++b) bits |= std::uint64_t(bytes[b]) << (8 * b);
+  return bits;
+}
+
+void classify_row_wide(const MarchState& march, const float* values, int count, std::uint64_t* bits) {
+  const Floats d;
+  const int lanes = int(hn::Lanes(d));
+  const auto isovalue = hn::Set(d, march.isovalue);
+  for (int first = 0; first < count; first += 64) {
+    const int here = std::min(64, count - first);
+    std::uint64_t word = 0;
+    int i = 0;
+    for (; i + lanes <= here; i += lanes)
+      word |= inside_bits(d, hn::LoadU(d, values + first + i), isovalue, march.outer) << i;
+    for (; i < here; ++i) {
+      const float value = values[first + i];
+      const bool inside = march.outer == OuterSide::kLower ? value >= march.isovalue : value <= march.isovalue;
+      word |= std::uint64_t(inside) << i;
+    }
+    bits[first / 64] = word;
+  }
+}
+
+void find_range_wide(const Volume& volume, const Index3& first, const Index3& last, float& low, float& high) {
+  const Floats d;
+  const int lanes = int(hn::Lanes(d));
+  const Lattice& lattice = volume.lattice();
+  const float* values = volume.values.values().data();
+  constexpr float kInfinity = std::numeric_limits<float>::infinity();
+  auto lowest = hn::Set(d, kInfinity);
+  auto highest = hn::Set(d, -kInfinity);
+  auto odd = hn::MaskFromVec(hn::Zero(d));
+  low = kInfinity;
+  high = -kInfinity;
+  const int count = last.x - first.x + 1;
+  bool odd_tail = false;
+  for (int k = first.z; k <= last.z; ++k) {
+    for (int j = first.y; j <= last.y; ++j) {
+      const float* row = values + lattice.offset(first.x, j, k);
+      int i = 0;
+      for (; i + lanes <= count; i += lanes) {
+        const auto value = hn::LoadU(d, row + i);
+        lowest = hn::Min(lowest, value);
+        highest = hn::Max(highest, value);
+        odd = hn::Or(odd, hn::Ne(value, value));
+      }
+      for (; i < count; ++i) {
+        low = std::min(low, row[i]);
+        high = std::max(high, row[i]);
+        odd_tail |= row[i] != row[i];  // NOLINT(misc-redundant-expression): true of NaN alone
+      }
+    }
+  }
+  low = std::min(low, hn::GetLane(hn::MinOfLanes(d, lowest)));
+  high = std::max(high, hn::GetLane(hn::MaxOfLanes(d, highest)));
+  if (odd_tail || !hn::AllFalse(d, odd)) {
+    low = -kInfinity;
+    high = kInfinity;
+  }
+}
+
+std::uint32_t ones(std::uint64_t bits) { return std::uint32_t(std::popcount(bits)); }
+
+/// Segments on 64 faces with the corners a b / c d: one where the corners differ, two where they alternate.
+std::uint32_t segments(std::uint64_t a, std::uint64_t b, std::uint64_t c, std::uint64_t d, std::uint64_t mask) {
+  const std::uint64_t some = (a | b | c | d) & ~(a & b & c & d) & mask;
+  const std::uint64_t alternating = (a ^ b) & (c ^ d) & (a ^ c) & mask;
+  return ones(some) + ones(alternating);
+}
+
+/// Adds what the grid points of one word own.
+template <Connectivity kConnectivity>
+void count_word(const MarchState& march, int j, int k, int word, const WordBits& bits, const CaseTable& cases,
+                Counts& counts) {
+  const auto& [a, b, c, d] = bits.here;
+  const std::uint64_t cells = march.cell_mask(word);
+  const bool below_last_row = j + 1 < march.ny;
+  const bool below_last_plane = k + 1 < march.nz;
+  counts.vertex_x += ones((a ^ bits.next[0]) & cells);
+  counts.vertex_y += ones(a ^ b);
+  counts.vertex_z += ones(a ^ c);
+  if constexpr (kConnectivity == Connectivity::kHalfEdges) {
+    if (below_last_row && below_last_plane) counts.face_x += segments(a, b, c, d, ~std::uint64_t(0));
+    if (below_last_plane) counts.face_y += segments(a, bits.next[0], c, bits.next[2], cells);
+    if (below_last_row) counts.face_z += segments(a, bits.next[0], b, bits.next[1], cells);
+  }
+  if (!below_last_row || !below_last_plane) return;
+  for (std::uint64_t mixed = bits.mixed(cells); mixed != 0; mixed &= mixed - 1) {
+    const CellCase& cell = cases[bits.corners(std::countr_zero(mixed))];
+    counts.triangle += cell.triangles;
+    if constexpr (kConnectivity == Connectivity::kHalfEdges) counts.inner += cell.inner_edges;
+  }
+}
+
+template <Connectivity kConnectivity>
+void count_slab_wide(MarchState& march, int k, const std::uint32_t* candidates, std::size_t candidate_count) {
+  const CaseTable& cases = case_table(CaseTable::Winding::kOutwards);  // counts are the same for both
+  Counts counts;
+  std::uint32_t* active = march.slab_active(k);
+  Counts* rows = march.slab_rows(k);
+  std::uint32_t found = 0;
+  int last_row = -1;
+  const auto visit = [&](int j, int word, std::uint32_t number) HWY_ATTR {
+    const WordBits bits(march, j, k, word);
+    const auto& [a, b, c, d] = bits.here;
+    const std::uint64_t differing = ((a | b | c | d) & ~(a & b & c & d)) | bits.mixed(march.cell_mask(word));
+    if (differing == 0) return;
+    if (j != last_row) rows[j] = counts;
+    last_row = j;
+    active[found++] = number;
+    count_word<kConnectivity>(march, j, k, word, bits, cases, counts);
+  };
+  if (candidates != nullptr) {
+    for (std::size_t n = 0; n < candidate_count; ++n)
+      visit(int(candidates[n]) / march.words, int(candidates[n]) % march.words, candidates[n]);
+  } else {
+    std::uint32_t number = 0;
+    for (int j = 0; j < march.ny; ++j)
+      for (int word = 0; word < march.words; ++word) visit(j, word, number++);
+  }
+  march.slabs[k].active_words = found;
+  march.slabs[k].total = counts;
+}
+
+void count_slab_indexed(MarchState& march, int k, const std::uint32_t* candidates, std::size_t candidate_count) {
+  count_slab_wide<Connectivity::kIndexed>(march, k, candidates, candidate_count);
+}
+
+void count_slab_half_edges(MarchState& march, int k, const std::uint32_t* candidates, std::size_t candidate_count) {
+  count_slab_wide<Connectivity::kHalfEdges>(march, k, candidates, candidate_count);
+}
+
+}  // namespace
+}  // namespace HWY_NAMESPACE
+}  // namespace isolux::mc
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace isolux::mc {
+
+HWY_EXPORT(classify_row_wide);
+HWY_EXPORT(find_range_wide);
+HWY_EXPORT(count_slab_indexed);
+HWY_EXPORT(count_slab_half_edges);
+
+void classify_row(const MarchState& march, const float* values, int count, std::uint64_t* bits) {
+  HWY_DYNAMIC_DISPATCH(classify_row_wide)(march, values, count, bits);
+}
+
+void find_range(const Volume& volume, const Index3& first, const Index3& last, float& low, float& high) {
+  HWY_DYNAMIC_DISPATCH(find_range_wide)(volume, first, last, low, high);
+}
+
+void count_slab(MarchState& march, int k, const std::uint32_t* candidates, std::size_t candidate_count,
+                Connectivity connectivity) {
+  if (connectivity == Connectivity::kIndexed)
+    HWY_DYNAMIC_DISPATCH(count_slab_indexed)(march, k, candidates, candidate_count);
+  else
+    HWY_DYNAMIC_DISPATCH(count_slab_half_edges)(march, k, candidates, candidate_count);
+}
+
+}  // namespace isolux::mc
+#endif
