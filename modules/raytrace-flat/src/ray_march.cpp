@@ -22,7 +22,7 @@ struct RayMarch::Ray {
   double plane_origin[3];  ///< origin, or a place behind every plane where the direction is zero
   int forward[3];          ///< 1 towards higher indices, else 0
   int cell[3];
-  std::array<double, 3> position;  ///< at t, exact on the faces that the ray crosses
+  bool on_plane[3] = {false, false, false};  ///< at t the ray enters its cell through the plane it moves away from
   double t = 0.0;
   double limit = kInfinity;
   double scale = 1.0;   ///< length of the caller's direction in ours
@@ -30,7 +30,7 @@ struct RayMarch::Ray {
   double level = 0.0;
   double inner = 1.0;            ///< +1 if the side the ray must not enter has the higher values, else -1
   bool fresh = false;            ///< still at its start on the level set: the root there is known
-  std::size_t brick = kNoBrick;  ///< the fine brick known to be worth entering
+  std::size_t brick = kNoBrick;  ///< the finest brick known to be worth entering
 };
 
 /// From the ray's place to the next plane: through a brick that cannot hold the level set, or through one cell.
@@ -39,7 +39,13 @@ struct RayMarch::Step {
   int plane[3];
   double plane_t[3];
   double t;
-  std::array<double, 3> position;
+};
+
+/// The part of a ray within one cell, in the cell's own coordinates.
+struct RayMarch::Part {
+  std::array<double, 3> enter;
+  std::array<double, 3> leave;
+  double length;  ///< in t
 };
 
 RayMarch::RayMarch(const Volume& volume)
@@ -63,7 +69,6 @@ bool RayMarch::make_ray(const Vec3& origin, const Vec3& direction, double limit,
     if (d == 0.0) ray.cell[a] = std::min(ray.cell[a], lattice_.size[a] - 2);
     if (ray.cell[a] < 0 || ray.cell[a] > lattice_.size[a] - 2) return false;
     ray.origin[a] = o;
-    ray.position[std::size_t(a)] = o;
     ray.direction[a] = d;
     ray.inverse[a] = d == 0.0 ? kInfinity : 1.0 / d;
     ray.plane_origin[a] = d == 0.0 ? -1.0 : o;
@@ -79,22 +84,22 @@ void RayMarch::load(const Ray& ray, CellCorners& corners) const {
   corners = {p[0], p[1], p[y], p[y + 1], p[z], p[z + 1], p[y + z], p[y + z + 1]};
 }
 
-std::array<double, 3> RayMarch::place_in_cell(const Ray& ray, const std::array<double, 3>& position) const {
-  return {position[0] - ray.cell[0], position[1] - ray.cell[1], position[2] - ray.cell[2]};
+std::array<double, 3> RayMarch::start_in_cell(const Ray& ray) const {
+  return {ray.origin[0] - ray.cell[0], ray.origin[1] - ray.cell[1], ray.origin[2] - ray.cell[2]};
 }
 
-// False where the ray leaves its limit behind.
-bool RayMarch::plan(Ray& ray, Step& step, TraceCounters& counters) const {
+void RayMarch::plan(Ray& ray, Step& step, TraceCounters& counters) const {
   step.shift = 0;
-  const Macrocells::Level& fine = macrocells_.fine();
-  const std::size_t brick = fine.offset(ray.cell);
+  const auto& levels = macrocells_.levels();
+  const std::size_t brick = levels[0].offset(ray.cell);
   if (brick != ray.brick) {
     const auto out_of_reach = [&ray](const Macrocells::Level& level, std::size_t b) {
       return ray.inner > 0.0 ? double(level.high[b]) < ray.level : double(level.low[b]) > ray.level;
     };
-    if (out_of_reach(fine, brick)) {
-      const Macrocells::Level& coarse = macrocells_.coarse();
-      step.shift = out_of_reach(coarse, coarse.offset(ray.cell)) ? coarse.shift : fine.shift;
+    if (out_of_reach(levels[0], brick)) {
+      std::size_t i = 0;
+      while (i + 1 < levels.size() && out_of_reach(levels[i + 1], levels[i + 1].offset(ray.cell))) ++i;
+      step.shift = levels[i].shift;
     } else {
       ray.brick = brick;
       ++counters.macrocells;
@@ -108,34 +113,27 @@ bool RayMarch::plan(Ray& ray, Step& step, TraceCounters& counters) const {
   }
   // Roundings must not turn the ray back.
   step.t = std::max(step.t, ray.t);
-  const double end = std::min(step.t, ray.limit);
-  for (int a = 0; a < 3; ++a) {
-    const double x = ray.origin[a] + end * ray.direction[a];
-    const int low = (ray.cell[a] >> step.shift) << step.shift;
-    const int high = low + (1 << step.shift);
-    step.position[std::size_t(a)] = step.plane_t[a] <= end ? step.plane[a] : std::clamp(x, double(low), double(high));
-  }
-  return ray.t < ray.limit;
 }
 
-// The part of the step at which the level set is met.
-std::optional<double> RayMarch::test_cell(Ray& ray, const Step& step, RootWish wish, TraceCounters& counters) const {
-  ++counters.cells;
-  CellCorners g;
-  load(ray, g);
-  double most = -kInfinity;
-  for (double& v : g) {
-    v = ray.inner * (v - ray.level);
-    most = std::max(most, v);
-  }
-  if (most < 0.0) {
-    ray.fresh = false;
-    return std::nullopt;
-  }
+// Exact on the planes that the ray crosses, so that both neighbours of a face see one place there.
+RayMarch::Part RayMarch::part_in_cell(const Ray& ray, const Step& step) const {
+  Part part;
   const double end = std::min(step.t, ray.limit);
-  if (ray.fresh && end - ray.t <= rounding_) return std::nullopt;
-  ++counters.cubics;
-  const auto b = segment_cubic(g, place_in_cell(ray, ray.position), place_in_cell(ray, step.position));
+  part.length = end - ray.t;
+  for (int a = 0; a < 3; ++a) {
+    const auto axis = std::size_t(a);
+    const double base = ray.origin[a] - ray.cell[a];
+    const double near = ray.forward[a] != 0 ? 0.0 : 1.0;
+    part.enter[axis] = ray.on_plane[a] ? near : std::clamp(base + ray.t * ray.direction[a], 0.0, 1.0);
+    part.leave[axis] = step.plane_t[a] <= end ? 1.0 - near : std::clamp(base + end * ray.direction[a], 0.0, 1.0);
+  }
+  return part;
+}
+
+// The place s on the part at which the level set is met.
+std::optional<double> RayMarch::test_cell(Ray& ray, const Part& part, CellCorners& g, RootWish wish) const {
+  for (double& v : g) v = ray.inner * (v - ray.level);
+  const auto b = segment_cubic(g, part.enter, part.leave);
   if (!ray.fresh) {
     if (b[0] >= 0.0) return 0.0;
     return first_root(b, wish);
@@ -147,19 +145,48 @@ std::optional<double> RayMarch::test_cell(Ray& ray, const Step& step, RootWish w
   return std::nullopt;
 }
 
-// False where the ray leaves the box.
+std::optional<LevelSetHit> RayMarch::visit_cell(Ray& ray, const Step& step, RootWish wish,
+                                                TraceCounters& counters) const {
+  ++counters.cells;
+  CellCorners corners;
+  load(ray, corners);
+  const bool reached = ray.inner > 0.0 ? *std::max_element(corners.begin(), corners.end()) >= ray.level
+                                       : *std::min_element(corners.begin(), corners.end()) <= ray.level;
+  if (!reached) {
+    ray.fresh = false;
+    return std::nullopt;
+  }
+  const Part part = part_in_cell(ray, step);
+  // A first interval as short as the rounding of a coordinate tells nothing: the next cell is then the first.
+  if (ray.fresh && part.length <= rounding_) return std::nullopt;
+  ++counters.cubics;
+  const auto s = test_cell(ray, part, corners, wish);
+  if (!s) return std::nullopt;
+  LevelSetHit hit;
+  for (int a = 0; a < 3; ++a) {
+    const auto axis = std::size_t(a);
+    hit.position[a] = ray.cell[a] + ((1.0 - *s) * part.enter[axis] + *s * part.leave[axis]);
+  }
+  hit.t = ray.offset + (ray.t + *s * part.length) / ray.scale;
+  return hit;
+}
+
+// False where the ray leaves the box or its limit behind.
 bool RayMarch::advance(Ray& ray, const Step& step) const {
   ray.t = step.t;
-  ray.position = step.position;
+  if (!(ray.t < ray.limit)) return false;
   for (int a = 0; a < 3; ++a) {
     int& cell = ray.cell[a];
-    if (step.plane_t[a] <= step.t) {
+    ray.on_plane[a] = step.plane_t[a] <= step.t;
+    if (ray.on_plane[a]) {
       cell = step.plane[a] + ray.forward[a] - 1;
-    } else if (step.shift > 0) {
-      const int low = (cell >> step.shift) << step.shift;
-      const int here = std::clamp(int(step.position[std::size_t(a)]), low, low + (1 << step.shift) - 1);
-      cell = ray.forward[a] != 0 ? std::max(cell, here) : std::min(cell, here);
+    } else if (step.shift > 0 && ray.direction[a] != 0.0) {
+      // Never back, and never out of the brick.
+      const int low = ray.forward[a] != 0 ? cell : (cell >> step.shift) << step.shift;
+      const int high = ray.forward[a] != 0 ? step.plane[a] - 1 : cell;
+      cell = std::clamp(int(ray.origin[a] + step.t * ray.direction[a]), low, high);
     }
+    // The last bricks may reach over the box's end.
     if (cell < 0 || cell > lattice_.size[a] - 2) return false;
   }
   return true;
@@ -168,15 +195,11 @@ bool RayMarch::advance(Ray& ray, const Step& step) const {
 std::optional<LevelSetHit> RayMarch::march(Ray& ray, RootWish wish, TraceCounters& counters) const {
   Step step;
   do {
-    if (!plan(ray, step, counters)) return std::nullopt;
+    plan(ray, step, counters);
     if (step.shift > 0) {
       ray.fresh = false;
-    } else if (const auto s = test_cell(ray, step, wish, counters)) {
+    } else if (auto hit = visit_cell(ray, step, wish, counters)) {
       ++counters.hits;
-      LevelSetHit hit;
-      for (int a = 0; a < 3; ++a)
-        hit.position[a] = (1.0 - *s) * ray.position[std::size_t(a)] + *s * step.position[std::size_t(a)];
-      hit.t = ray.offset + (ray.t + *s * (std::min(step.t, ray.limit) - ray.t)) / ray.scale;
       return hit;
     }
   } while (advance(ray, step));
@@ -198,7 +221,7 @@ std::optional<LevelSetHit> RayMarch::next_hit(const Vec3& origin, const Vec3& di
   load(ray, corners);
   double largest = 0.0;
   for (const double v : corners) largest = std::max(largest, std::fabs(v));
-  const double start = cell_value(corners, place_in_cell(ray, ray.position));
+  const double start = cell_value(corners, start_in_cell(ray));
   ray.level = std::fabs(start - isovalue) <= 0x1p-46 * largest ? isovalue : start;
   return march(ray, wish, counters);
 }
@@ -233,10 +256,10 @@ std::optional<LevelSetHit> RayMarch::first_hit(const Vec3& origin, const Vec3& d
   CellCorners corners;
   load(ray, corners);
   for (double& v : corners) v -= isovalue;
-  const double value = cell_value(corners, place_in_cell(ray, ray.position));
+  const double value = cell_value(corners, start_in_cell(ray));
   if (value == 0.0) {
     ++counters.hits;
-    return LevelSetHit{.t = enter, .position = {ray.position[0], ray.position[1], ray.position[2]}};
+    return LevelSetHit{.t = enter, .position = {ray.origin[0], ray.origin[1], ray.origin[2]}};
   }
   ray.inner = value < 0.0 ? 1.0 : -1.0;
   return march(ray, RootWish::kPlace, counters);

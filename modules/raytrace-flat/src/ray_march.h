@@ -29,14 +29,17 @@ class RayMarch {
  private:
   struct Ray;
   struct Step;
+  struct Part;
   [[nodiscard]] bool make_ray(const Vec3& origin, const Vec3& direction, double limit, Ray& ray) const;
   [[nodiscard]] std::optional<LevelSetHit> march(Ray& ray, RootWish wish, TraceCounters& counters) const;
-  [[nodiscard]] bool plan(Ray& ray, Step& step, TraceCounters& counters) const;
-  [[nodiscard]] std::optional<double> test_cell(Ray& ray, const Step& step, RootWish wish,
-                                                TraceCounters& counters) const;
+  void plan(Ray& ray, Step& step, TraceCounters& counters) const;
+  [[nodiscard]] std::optional<LevelSetHit> visit_cell(Ray& ray, const Step& step, RootWish wish,
+                                                      TraceCounters& counters) const;
+  [[nodiscard]] Part part_in_cell(const Ray& ray, const Step& step) const;
+  [[nodiscard]] std::optional<double> test_cell(Ray& ray, const Part& part, CellCorners& corners, RootWish wish) const;
   [[nodiscard]] bool advance(Ray& ray, const Step& step) const;
   void load(const Ray& ray, CellCorners& corners) const;
-  [[nodiscard]] std::array<double, 3> place_in_cell(const Ray& ray, const std::array<double, 3>& position) const;
+  [[nodiscard]] std::array<double, 3> start_in_cell(const Ray& ray) const;
 
   Lattice lattice_;
   const float* data_;
