@@ -109,7 +109,7 @@ DeflatedRoot deflated_root(const std::array<double, 4>& b) {
     // Bernstein's quadratic in r = s/(1 - s) is c0 + 2 c1 r + c2 r^2; of the two forms of its first positive root the
     // one that adds what has one sign.
     const double root = std::sqrt(std::max(0.0, c1 * c1 - c0 * c2));
-    const double s = c1 > 0.0 ? -c0 / (c1 + root - c0) : (root - c1) / (root - c1 + c2);
+    const double s = c1 >= 0.0 ? -c0 / (c1 + root - c0) : (root - c1) / (root - c1 + c2);
     return {.kind = Kind::kHit, .s = std::min(s, 1.0)};
   }
   // Tangent at the start: the next factor decides, 2 c1 (1 - s) + c2 s.
