@@ -39,12 +39,11 @@ TraceSettings TraceOptions::settings() const {
   return settings;
 }
 
-bool warn_outside_range(const Volume& volume, float isovalue, const Session& session) {
+void warn_outside_range(const Volume& volume, float isovalue, const Session& session) {
   const ValueRange range = value_range(volume);
-  if (isovalue >= range.low && isovalue <= range.high) return true;
+  if (isovalue >= range.low && isovalue <= range.high) return;
   session.warn(fmt::format("isovalue {} lies outside the values of {} ({} to {}): there is no surface", isovalue,
                            volume.name, range.low, range.high));
-  return false;
 }
 
 }  // namespace isolux

@@ -28,8 +28,8 @@ class TraceOptions {
   std::string tracer_;
 };
 
-/// The isovalue and what a figure of it may say: true if {f = isovalue} can be there; else a warning was printed.
-[[nodiscard]] bool warn_outside_range(const Volume& volume, float isovalue, const Session& session);
+/// Says so if no voxel is on one side of the isovalue: the surface is empty.
+void warn_outside_range(const Volume& volume, float isovalue, const Session& session);
 
 /// \throw UsageError if the registry does not know the backend or its settings.
 template <class Stage>

@@ -30,7 +30,7 @@ struct RenderSettings {
   float isovalue = 0.0f;
   OuterSide outer = OuterSide::kLower;
   GradientKind gradient = GradientKind::kCentralDifferences;
-  Vec3f background{0.5f};  ///< linear radiance
+  Vec3f background{0.2f};  ///< linear radiance
 };
 
 /// Casts rays at the level set {f = isovalue} of the trilinear field itself, not at a mesh of it. The same bits for any
