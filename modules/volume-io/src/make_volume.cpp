@@ -5,8 +5,25 @@
 
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
 
 namespace isolux::detail {
+
+void require_frame(const std::string& path, const IndexToWorld& frame) {
+  const auto finite = [](const Vec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); };
+  if (!finite(frame.origin)) throw InvalidInput(fmt::format("{}: the origin is not finite", path));
+  Mat3 unit(1.0);
+  for (int a = 0; a < 3; ++a) {
+    const double length = glm::length(frame.axes[a]);
+    if (!std::isfinite(length) || !(length > 0.0))
+      throw InvalidInput(
+          fmt::format("{}: axis {} has the spacing {}; it must be finite and not zero", path, a, length));
+    unit[a] = frame.axes[a] / length;
+  }
+  // The volume of the cell of unit edges: a millionth is far flatter than any scanner's.
+  if (!(std::fabs(glm::determinant(unit)) > 1e-6))
+    throw InvalidInput(fmt::format("{}: the directions of the axes span no volume", path));
+}
 
 Volume make_volume(const std::string& name, Lattice lattice, std::vector<float> values, ScalarType stored,
                    std::string space, const ReadOptions& options) {
@@ -18,6 +35,7 @@ Volume make_volume(const std::string& name, Lattice lattice, std::vector<float> 
       lattice.frame.axes[a] = glm::normalize(lattice.frame.axes[a]) * step;
     }
   }
+  require_frame(name, lattice.frame);
   return {.values = Grid<float>(lattice, std::move(values)),
           .name = name,
           .stored_type = stored,

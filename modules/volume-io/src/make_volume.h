@@ -7,8 +7,11 @@
 
 namespace isolux::detail {
 
+/// \throw InvalidInput naming `path` unless the origin is finite and the axes are finite, not zero and span a volume
+void require_frame(const std::string& path, const IndexToWorld& frame);
+
 /// A volume of values read, with ReadOptions::spacing in place of the file's. \throw InvalidInput for a spacing that is
-/// not positive and finite
+/// not positive and finite, or for a frame as require_frame
 [[nodiscard]] Volume make_volume(const std::string& name, Lattice lattice, std::vector<float> values, ScalarType stored,
                                  std::string space, const ReadOptions& options);
 

@@ -1,0 +1,190 @@
+#include "files.h"
+#include "format_checks.h"
+#include "header_bytes.h"
+
+#include <fmt/format.h>
+#include <isolux/core/error.h>
+
+#include <array>
+#include <fstream>
+#include <map>
+#include <set>
+
+namespace isolux::detail {
+namespace {
+
+constexpr std::uint64_t kMostEntries = 4096;
+constexpr std::size_t kMostPages = 100000;
+// LZW repeats up to some 3000 bytes a code of 12 bits; deflate stays below.
+constexpr std::uint64_t kLargestRatio = 4096;
+
+enum Tag : int {
+  kWidth = 256,
+  kHeight = 257,
+  kBits = 258,
+  kCompression = 259,
+  kPhotometric = 262,
+  kStripOffsets = 273,
+  kSamples = 277,
+  kStripBytes = 279,
+  kTileOffsets = 324,
+  kTileBytes = 325
+};
+
+// TIFF 6.0 and BigTIFF, read as far as is needed to know where its data lie.
+class TiffWalker {
+ public:
+  explicit TiffWalker(const std::string& path)
+      : path_(path), file_(path, std::ios::binary), size_(require_file(path)), values_left_(size_) {
+    const std::string magic = first_bytes(path, 16);
+    big_endian_ = magic.starts_with("MM");
+    const HeaderBytes header(magic + std::string(16 - magic.size(), '\0'), big_endian_);
+    big_ = header.get<std::uint16_t>(2) == 43;
+    next_ = big_ ? header.get<std::uint64_t>(8) : header.get<std::uint32_t>(4);
+  }
+
+  [[nodiscard]] bool at_end() const { return next_ == 0; }
+  [[nodiscard]] std::uint64_t file_bytes() const { return size_; }
+
+  /// The next page's tags: each with all its numbers.
+  std::map<int, std::vector<std::uint64_t>> page() {
+    if (!visited_.insert(next_).second)
+      throw InvalidInput(fmt::format("{}: the TIFF's pages go round in a circle", path_));
+    const std::uint64_t begin = next_;
+    const std::size_t count_bytes = big_ ? 8 : 2;
+    const HeaderBytes start = bytes(begin, count_bytes);
+    const std::uint64_t count = big_ ? start.get<std::uint64_t>(0) : start.get<std::uint16_t>(0);
+    if (count > kMostEntries) throw InvalidInput(fmt::format("{}: a TIFF page of {} entries", path_, count));
+    const std::size_t entry_bytes = big_ ? 20 : 12;
+    const HeaderBytes entries = bytes(begin + count_bytes, std::size_t(count) * entry_bytes + (big_ ? 8 : 4));
+    std::map<int, std::vector<std::uint64_t>> tags;
+    for (std::uint64_t i = 0; i < count; ++i) {
+      const std::size_t at = std::size_t(i) * entry_bytes;
+      const int tag = entries.get<std::uint16_t>(at);
+      if (wanted(tag)) tags[tag] = values(entries, at);
+    }
+    const std::size_t end = std::size_t(count) * entry_bytes;
+    next_ = big_ ? entries.get<std::uint64_t>(end) : entries.get<std::uint32_t>(end);
+    return tags;
+  }
+
+ private:
+  static bool wanted(int tag) {
+    return (tag >= kWidth && tag <= kPhotometric) || tag == kStripOffsets || tag == kSamples || tag == kStripBytes ||
+           tag == kTileOffsets || tag == kTileBytes;
+  }
+  HeaderBytes bytes(std::uint64_t offset, std::uint64_t count) {
+    if (offset > size_ || count > size_ - offset)
+      throw IoError(fmt::format("{}: {} bytes expected at {}, the file has {}", path_, count, offset, size_));
+    std::string data(count, '\0');
+    file_.seekg(std::streamoff(offset));
+    file_.read(data.data(), std::streamsize(count));
+    return {std::move(data), big_endian_};
+  }
+  // The numbers of one entry, which stand in it if they fit and elsewhere if not.
+  std::vector<std::uint64_t> values(const HeaderBytes& entries, std::size_t at) {
+    static const std::map<int, std::size_t> widths = {{1, 1}, {3, 2}, {4, 4}, {16, 8}};
+    const auto width = widths.find(entries.get<std::uint16_t>(at + 2));
+    if (width == widths.end()) throw InvalidInput(fmt::format("{}: a TIFF tag of a type that it cannot have", path_));
+    const std::uint64_t count = big_ ? entries.get<std::uint64_t>(at + 4) : entries.get<std::uint32_t>(at + 4);
+    const std::size_t field = at + (big_ ? 12 : 8);
+    // All tags together cannot have more values than the file has bytes, unless they share them to waste our time.
+    if (count > values_left_)
+      throw IoError(fmt::format("{}: TIFF tags of more values than the file's {} bytes", path_, size_));
+    values_left_ -= count;
+    const std::uint64_t needed = count * width->second;
+    const bool inside = needed <= (big_ ? 8 : 4);
+    const std::uint64_t offset = big_ ? entries.get<std::uint64_t>(field) : entries.get<std::uint32_t>(field);
+    const HeaderBytes data = inside ? entries : bytes(offset, needed);
+    std::vector<std::uint64_t> numbers;
+    for (std::uint64_t i = 0; i < count; ++i) {
+      const std::size_t place = (inside ? field : 0) + std::size_t(i) * width->second;
+      switch (width->second) {
+        case 1:
+          numbers.push_back(data.get<std::uint8_t>(place));
+          break;
+        case 2:
+          numbers.push_back(data.get<std::uint16_t>(place));
+          break;
+        case 4:
+          numbers.push_back(data.get<std::uint32_t>(place));
+          break;
+        default:
+          numbers.push_back(data.get<std::uint64_t>(place));
+          break;
+      }
+    }
+    return numbers;
+  }
+
+  std::string path_;
+  std::ifstream file_;
+  std::uint64_t size_;
+  std::uint64_t values_left_;
+  bool big_endian_ = false;
+  bool big_ = false;
+  std::uint64_t next_ = 0;
+  std::set<std::uint64_t> visited_;
+};
+
+using Tags = std::map<int, std::vector<std::uint64_t>>;
+
+std::uint64_t one(const Tags& tags, int tag, std::uint64_t otherwise) {
+  const auto it = tags.find(tag);
+  return it == tags.end() || it->second.empty() ? otherwise : it->second.front();
+}
+
+void check_data(const std::string& path, const Tags& tags, std::uint64_t needed, std::uint64_t file_bytes) {
+  const bool tiled = tags.contains(kTileOffsets);
+  const auto offsets = tags.find(tiled ? kTileOffsets : kStripOffsets);
+  const auto counts = tags.find(tiled ? kTileBytes : kStripBytes);
+  if (offsets == tags.end() || counts == tags.end() || offsets->second.size() != counts->second.size())
+    throw InvalidInput(fmt::format("{}: a TIFF page does not say where its data are", path));
+  std::uint64_t found = 0;
+  for (std::size_t i = 0; i < offsets->second.size(); ++i) {
+    const std::uint64_t offset = offsets->second[i];
+    const std::uint64_t bytes = counts->second[i];
+    if (offset > file_bytes || bytes > file_bytes - offset)
+      throw IoError(
+          fmt::format("{}: {} bytes of data expected at {}, the file has {}", path, bytes, offset, file_bytes));
+    found += bytes;
+  }
+  const bool compressed = one(tags, kCompression, 1) != 1;
+  if (compressed ? found < needed / kLargestRatio : found < needed)
+    throw IoError(fmt::format("{}: a page of {} bytes expected, {} found", path, needed, found));
+}
+
+}  // namespace
+
+bool is_tiff(const std::string& path) {
+  const std::string magic = first_bytes(path, 4);
+  return magic == std::string("II*\0", 4) || magic == std::string("MM\0*", 4) || magic == std::string("II+\0", 4) ||
+         magic == std::string("MM\0+", 4);
+}
+
+CheckedHeader check_tiff(const std::string& path) {
+  TiffWalker walker(path);
+  CheckedHeader checked;
+  std::uint64_t bits = 0;
+  for (std::size_t pages = 0; !walker.at_end(); ++pages) {
+    if (pages == kMostPages) throw InvalidInput(fmt::format("{}: more than {} TIFF pages", path, kMostPages));
+    const Tags tags = walker.page();
+    const std::array<std::int64_t, 2> size = {std::int64_t(one(tags, kWidth, 0)), std::int64_t(one(tags, kHeight, 0))};
+    const std::uint64_t page_bits = one(tags, kBits, 1);
+    if (one(tags, kSamples, 1) != 1 || one(tags, kPhotometric, 1) > 1 ||
+        (page_bits != 8 && page_bits != 16 && page_bits != 32 && page_bits != 64))
+      throw InvalidInput(fmt::format("{}: supported are grey TIFF pages of 8, 16, 32 or 64 bits", path));
+    const std::uint64_t needed = checked_count(path, size, page_bits / 8) * (page_bits / 8);
+    check_data(path, tags, needed, walker.file_bytes());
+    const Index3 page{int(size[0]), int(size[1]), int(pages) + 1};
+    if (pages > 0 && (page.x != checked.size.x || page.y != checked.size.y || page_bits != bits))
+      throw InvalidInput(fmt::format("{}: page {} is {}x{} of {} bits, the first {}x{} of {}", path, pages, page.x,
+                                     page.y, page_bits, checked.size.x, checked.size.y, bits));
+    checked.size = page;
+    bits = page_bits;
+  }
+  if (checked.size.z == 0) throw InvalidInput(fmt::format("{}: a TIFF without a page", path));
+  return checked;
+}
+
+}  // namespace isolux::detail
