@@ -1,10 +1,12 @@
 // isolux: the command line. Commands, options, files and exit codes are those of docs/command-line.md.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <isolux/bake/version.h>
 #include <isolux/core/error.h>
 #include <isolux/core/options.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstdio>
 #include <exception>
 #include <new>
@@ -43,6 +45,20 @@ std::string explain(const CLI::ParseError& error, const CLI::App& app) {
   return why;
 }
 
+/// \throw UsageError if the first word is neither an option nor a command; CLI11 would only say that a command is
+/// missing.
+void require_command(const CLI::App& program, int argc, char** argv) {
+  if (argc < 2 || argv[1][0] == '-') return;
+  std::vector<std::string> known;
+  for (const CLI::App* command : program.get_subcommands({})) known.push_back(command->get_name());
+  const std::string word = argv[1];
+  if (std::find(known.begin(), known.end(), word) != known.end()) return;
+  const std::string near = isolux::nearest_word(word, known);
+  throw isolux::UsageError(fmt::format("no command is called '{}'{}; there are {}", word,
+                                       near.empty() ? "" : fmt::format(" (did you mean '{}'?)", near),
+                                       fmt::join(known, ", ")));
+}
+
 const CLI::App& chosen(const CLI::App& program) {
   const auto commands = program.get_subcommands();
   return commands.empty() ? program : *commands.front();
@@ -71,6 +87,7 @@ int main(int argc, char** argv) {
     isolux::add_probe_command(program, session);
     isolux::add_convert_command(program, session);
     isolux::add_companion_commands(program, session);
+    require_command(program, argc, argv);
     try {
       program.parse(argc, argv);
     } catch (const CLI::Success& help) {

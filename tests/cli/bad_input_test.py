@@ -1,0 +1,173 @@
+"""Bad input: one line on stderr, the right exit status, no output file left."""
+import math
+import os
+import struct
+import unittest
+
+from support import CommandLineTest
+
+
+class BadCommandLine(CommandLineTest):
+    def test_is_status_2_and_named(self):
+        cases = [
+            ((), "subcommand"),
+            (("frobnicate",), "frobnicate"),
+            (("bake",), "VOLUME"),
+            (("bake", "gen:sphere:8"), "--output"),
+            (("bake", "gen:sphere:8", "-o", "l.nrrd", "--bonces", "1"), "--bounces"),
+            (("bake", "gen:sphere:8", "-o", "l.nrrd", "--bounces", "-1"), "--bounces"),
+            (("bake", "gen:sphere:8", "-o", "l.nrrd", "--bounces", "many"), "many"),
+            (("bake", "gen:sphere:8", "-o", "l.nrrd", "--rays", "0"), "--rays"),
+            (("bake", "gen:sphere:8", "-o", "l.nrrd", "--rays", "ten"), "ten"),
+            (("bake", "gen:sphere:8", "-o", "l.nrrd", "--texels", "4x4"), "NXxNYxNZ"),
+            (("bake", "gen:sphere:8", "-o", "l.nrrd", "--texels", "4x0x4"), "4x0x4"),
+            (("bake", "gen:sphere:8", "-o", "l.nrrd", "--iso-range", "5:1"), "5:1"),
+            (("bake", "gen:sphere:8", "-o", "l.nrrd", "--iso-range", "nan:1"), "nan"),
+            (("bake", "gen:sphere:8", "-o", "l.nrrd", "--lattice", "edges"), "edges"),
+            (("bake", "gen:sphere:8", "-o", "l.nrrd", "--quality", "best"), "best"),
+            (("bake", "gen:sphere:8", "-o", "l.nrrd", "--rmse", "0"), "--rmse"),
+            (("bake", "gen:sphere:8", "-o", "l.nrrd", "--resampler", "cel_grid"), "did you mean 'cell_grid'"),
+            (("bake", "gen:sphere:8", "-o", "l.nrrd", "--sampler", "poisson"), "stratified"),
+            (("bake", "gen:sphere:8", "-o", "l.nrrd", "--tracer", "embree"), "scalar"),
+            (("bake", "gen:sphere:8", "-o", "l.nrrd", "--resampler", "cell_grid", "--set", "resampler.kk=3"), "kk"),
+            (("bake", "gen:sphere:8", "-o", "l.nrrd", "--resampler", "cell_grid", "--set", "resampler.k=-1"), "k = '-1'"),
+            (("bake", "gen:sphere:8", "-o", "l.nrrd", "--set", "oven.k=3"), "resampler"),
+            (("bake", "gen:sphere:8", "-o", "l.nrrd", "--set", "k"), "key=value"),
+            (("bake", "gen:sphere:8", "-o", "l.nrrd", "--threads", "0"), "--threads"),
+            (("bake", "x.raw", "-o", "l.nrrd", "--dims", "4x4x4"), "--type"),
+            (("bake", "x.raw", "-o", "l.nrrd", "--dims", "4x4x4", "--type", "uint7"), "uint7"),
+            (("bake", "x.raw", "-o", "l.nrrd", "--spacing", "1,2"), "--spacing"),
+            (("extract", "gen:sphere:8", "-o", "m.ply"), "--iso"),
+            (("extract", "gen:sphere:8", "-o", "m.ply", "--iso", "high"), "high"),
+            (("extract", "gen:sphere:8", "-o", "m.ply", "--iso", "-.3", "--backend", "flying"), "marching_cubes"),
+            (("render", "gen:sphere:8", "-o", "i.png", "--iso", "-.3", "--size", "0x5"), "0x5"),
+            (("render", "gen:sphere:8", "-o", "i.png", "--iso", "-.3", "--view", "30"), "--view"),
+            (("render", "gen:sphere:8", "-o", "i.png", "--iso", "-.3", "--mode", "global"), "--light"),
+            (("probe", "gen:sphere:8", "-o", "o.csv", "--points", "p.csv"), "--light"),
+        ]
+        for arguments, said in cases:
+            with self.subTest(arguments=arguments):
+                self.fail(2, *arguments, says=said)
+
+
+class BadVolume(CommandLineTest):
+    def bake(self, volume, *more, says):
+        with self.subTest(volume=volume):
+            self.fail(1, "bake", volume, "-o", "light.nrrd", "--rays", 1, "--quiet", *more, says=says)
+            self.fail(1, "extract", volume, "-o", "mesh.ply", "--iso", 1, *more, says=says)
+
+    def nrrd(self, name, header, data=b""):
+        return self.write(name, ("NRRD0004\n" + header + "\n\n").encode() + data)
+
+    def test_missing_empty_and_unknown_files(self):
+        self.bake("nowhere.nrrd", says="nowhere.nrrd")
+        self.write("empty.nrrd", b"")
+        self.bake("empty.nrrd", says="empty.nrrd")
+        self.write("letter.txt", b"Dear reader")
+        self.bake("letter.txt", says="letter.txt")
+        os.mkdir(self.path("folder"))
+        self.bake("folder", says="folder")
+
+    def test_broken_headers(self):
+        good = "type: float\ndimension: 3\nsizes: 4 4 4\nencoding: raw\nendian: little"
+        data = struct.pack("<64f", *range(64))
+        self.nrrd("short.nrrd", good, data[:-1])
+        self.bake("short.nrrd", says=("short.nrrd", "256", "255"))
+        self.nrrd("type.nrrd", good.replace("float", "quaternion"), data)
+        self.bake("type.nrrd", says=("type.nrrd", "quaternion"))
+        self.nrrd("overflow.nrrd", good.replace("4 4 4", "4294967296 4294967296 4294967296"), data)
+        self.bake("overflow.nrrd", says="overflow.nrrd")
+        self.nrrd("negative.nrrd", good.replace("4 4 4", "4 -4 4"), data)
+        self.bake("negative.nrrd", says=("negative.nrrd", "-4"))
+        self.nrrd("gzip.nrrd", good.replace("raw", "gzip"), data)
+        self.bake("gzip.nrrd", says="gzip.nrrd")
+        self.nrrd("outside.nhdr", good + "\ndata file: /etc/passwd")
+        self.bake("outside.nhdr", says=("/etc/passwd", "--allow-external-data"))
+        self.write("name_4x4x4_float32.raw", data[:-4])
+        self.bake("name_4x4x4_float32.raw", says=("256", "252"))
+
+    def test_useless_values(self):
+        def raw(name, dims, values):
+            self.write(name, struct.pack(f"<{len(values)}f", *values))
+
+        raw("nan_2x2x2_float32.raw", 2, [0, 1, 2, 3, math.nan, 5, 6, 7])
+        self.bake("nan_2x2x2_float32.raw", says=("nan_2x2x2", "not finite", "0,0,1"))
+        raw("inf_2x2x2_float32.raw", 2, [0, 1, 2, 3, -math.inf, 5, 6, 7])
+        self.bake("inf_2x2x2_float32.raw", says=("inf_2x2x2", "not finite"))
+        self.succeed("bake", "nan_2x2x2_float32.raw", "-o", "fixed.nrrd", "--rays", 1, "--replace-nonfinite", 0, "--quiet")
+        os.remove(self.path("fixed.nrrd"))
+        raw("flat_2x1x4_float32.raw", 2, list(range(8)))
+        self.bake("flat_2x1x4_float32.raw", says=("2x1x4", "at least 2"))
+        raw("constant_2x2x2_float32.raw", 2, [7] * 8)
+        self.fail(1, "bake", "constant_2x2x2_float32.raw", "-o", "light.nrrd", says=("every voxel is 7", "constant"))
+        self.fail(1, "bake", "gen:sphere:8", "-o", "light.nrrd", "--iso-range", "5:6", says="5:6")
+
+    def test_generated_volumes_are_checked_too(self):
+        self.bake("gen:spere:16", says=("spere", "sphere"))
+        self.bake("gen:sphere:1", says="1")
+        self.bake("gen:sphere:-5", says="-5")
+        self.bake("gen:sphere:1e9", says="1e9")
+        self.bake("gen:sphere:99999", says="99999")
+
+
+class BadScene(CommandLineTest):
+    def test_is_named_with_its_key(self):
+        cases = [
+            ("{", "not JSON"),
+            ("[]", "object"),
+            ('{"albdeo": [1, 1, 1]}', "did you mean 'albedo'"),
+            ('{"albedo": 0.5}', "albedo"),
+            ('{"albedo": [1, 1]}', "albedo"),
+            ('{"albedo": [1, 1, 1.5]}', "from 0 to 1"),
+            ('{"albedo": [1, 1, -1]}', "albedo"),
+            ('{"albedo": {"by_isovalue": []}}', "by_isovalue"),
+            ('{"albedo": {"by_isovalue": [[2, 0, 0, 0], [1, 0, 0, 0]]}}', "rise"),
+            ('{"environment": {"type": "sun"}}', "uniform, sky, image"),
+            ('{"environment": {"type": "uniform", "radience": [1, 1, 1]}}', "did you mean 'radiance'"),
+            ('{"environment": {"type": "sky", "up": [0, 0, 0]}}', "no direction"),
+            ('{"lights": {}}', "array"),
+            ('{"lights": [{"type": "lamp"}]}', "lights[0]"),
+            ('{"lights": [{"type": "sphere", "center": [0, 0, 0], "radius": -1, "radiance": [1, 1, 1]}]}', "lights[0].radius"),
+            ('{"lights": [{"type": "sun", "irradiance": [1, 1, 1]}]}', "'direction' is missing"),
+            ('{"outer": "inner"}', "lower, higher"),
+        ]
+        for text, said in cases:
+            with self.subTest(scene=text):
+                self.write("scene.json", text)
+                self.fail(1, "bake", "gen:sphere:8", "-o", "light.nrrd", "--scene", "scene.json", says=("scene.json", said))
+        self.fail(1, "bake", "gen:sphere:8", "-o", "light.nrrd", "--scene", "gone.json", says="gone.json")
+        self.write("scene.json", '{"environment": {"type": "image", "file": "gone.hdr"}}')
+        self.fail(1, "bake", "gen:sphere:8", "-o", "light.nrrd", "--scene", "scene.json", says="gone.hdr")
+
+
+class BadOutput(CommandLineTest):
+    def test_a_folder_that_is_not_there(self):
+        self.fail(1, "bake", "gen:sphere:8", "-o", "gone/light.nrrd", "--rays", 1, "--quiet", says="gone")
+        self.fail(1, "extract", "gen:sphere:8", "--iso", -0.3, "-o", "gone/mesh.ply", says="gone")
+        self.fail(1, "render", "gen:sphere:8", "--iso", -0.3, "-o", "gone/image.png", "--size", "8x8", says="gone")
+
+    def test_an_old_file_survives_a_failed_run(self):
+        self.write("light.nrrd", "precious")
+        self.fail(1, "bake", "gone.nrrd", "-o", "light.nrrd", says="gone.nrrd")
+        self.assertEqual(self.read("light.nrrd"), b"precious")
+
+
+class BadLight(CommandLineTest):
+    def test_is_refused(self):
+        self.write("points.csv", "0.5,0.5,0.8\n")
+        self.write("light.nrrd", "NRRD0005\n")
+        self.fail(1, "probe", "gen:sphere:8", "--light", "light.nrrd", "--points", "points.csv", "-o", "o.csv", says="light.nrrd")
+        self.fail(1, "probe", "gen:sphere:8", "--light", "gone.nrrd", "--points", "points.csv", "-o", "o.csv", says="gone.nrrd")
+        self.succeed("convert", "gen:sphere:8", "light.nrrd")
+        self.fail(1, "probe", "gen:sphere:8", "--light", "light.nrrd", "--points", "points.csv", "-o", "o.csv",
+                  says=("light.nrrd", "isolux.volume_sha256"))
+
+    def test_bad_points_are_named_by_line(self):
+        self.succeed("bake", "gen:sphere:8", "-o", "light.nrrd", "--rays", 1, "--quiet")
+        self.write("points.csv", "x,y,z\n0.5,0.5,0.8\n0.5,half,0.8\n")
+        self.fail(1, "probe", "gen:sphere:8", "--light", "light.nrrd", "--points", "points.csv", "-o", "o.csv",
+                  says=("points.csv", "line 3", "half"))
+
+
+if __name__ == "__main__":
+    unittest.main()

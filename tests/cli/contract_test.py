@@ -1,0 +1,223 @@
+"""The commands, files and reports that users' scripts rely on."""
+import json
+import math
+import os
+import signal
+import struct
+import subprocess
+import time
+import unittest
+
+from support import ISOLUX, CommandLineTest, nrrd_header
+
+
+def ply(path):
+    """(header lines, vertices as tuples, faces as tuples) of a binary little-endian PLY of floats and uchars."""
+    with open(path, "rb") as file:
+        content = file.read()
+    head, data = content.split(b"end_header\n", 1)
+    lines = head.decode().splitlines()
+    codes = {"float": "f", "uchar": "B", "uint8": "B", "float32": "f"}
+    vertices = faces = 0
+    layout = "<"
+    for line in lines:
+        words = line.split()
+        if words[:2] == ["element", "vertex"]:
+            vertices = int(words[2])
+        elif words[:2] == ["element", "face"]:
+            faces = int(words[2])
+        elif words[0] == "property" and words[1] != "list":
+            layout += codes[words[1]]
+    size = struct.calcsize(layout)
+    points = [struct.unpack_from(layout, data, i * size) for i in range(vertices)]
+    triangles = [struct.unpack_from("<B3i", data, vertices * size + i * 13)[1:] for i in range(faces)]
+    return lines, points, triangles
+
+
+class Info(CommandLineTest):
+    def test_json_describes_the_volume(self):
+        info = json.loads(self.succeed("info", "gen:sphere:9", "--json").stdout)
+        self.assertEqual(info["dims"], [9, 9, 9])
+        self.assertEqual(info["type"], "float32")
+        self.assertEqual(info["spacing"], [0.125, 0.125, 0.125])
+        self.assertAlmostEqual(info["range"][0], -math.sqrt(0.75), places=6)
+        self.assertEqual(info["range"][1], 0.0)
+        self.assertEqual(sum(info["histogram"]["counts"]), 729)
+
+    def test_counts_what_is_not_finite(self):
+        self.write("bad_2x2x2_float32.raw", struct.pack("<8f", 1, 2, 3, math.nan, 5, 6, math.inf, 8))
+        info = json.loads(self.succeed("info", "bad_2x2x2_float32.raw", "--json").stdout)
+        self.assertEqual(info["not_finite"], 2)
+        self.assertEqual(info["range"], [1, 8])
+
+
+class Backends(CommandLineTest):
+    def test_json_lists_stages_backends_and_options(self):
+        stages = {s["stage"]: {b["name"]: b for b in s["backends"]} for s in json.loads(self.succeed("backends", "--json").stdout)}
+        self.assertTrue({"reader", "extractor", "sampler", "tracer", "resampler"} <= stages.keys())
+        self.assertTrue({"brute_force", "cell_grid", "cgal_kdtree", "direct"} <= stages["resampler"].keys())
+        self.assertTrue({"random", "stratified", "low_discrepancy", "texels"} <= stages["sampler"].keys())
+        k = {o["name"]: o for o in stages["resampler"]["brute_force"]["options"]}["k"]
+        self.assertEqual(k["type"], "int")
+        self.assertTrue(k["help"] and k["default"] and k["allowed"])
+        self.assertEqual(sum(b["default"] for b in stages["tracer"].values()), 1)
+
+
+class Bake(CommandLineTest):
+    def bake(self, *more, volume="gen:sphere:16", out="light.nrrd", rays=16):
+        return self.succeed("bake", volume, "-o", out, "--rays", rays, "--quiet", *more)
+
+    def test_light_file_is_laid_out_as_promised(self):
+        self.bake("--report", "report.json")
+        fields, order, data = nrrd_header(self.path("light.nrrd"))
+        self.assertEqual(fields["type"], "float")
+        self.assertEqual(fields["encoding"], "raw")
+        self.assertEqual(fields["sizes"], "15 15 15")
+        self.assertLess(order.index("sizes"), order.index("space"))
+        self.assertEqual(len(data), 4 * 15**3)
+        self.assertEqual(fields["isolux.quantity"], "irradiance/pi")
+        for key in ("version", "scene", "settings", "volume_sha256", "iso_range"):
+            self.assertIn("isolux." + key, fields)
+        origin = [float(x) for x in fields["space origin"].strip("()").split(",")]
+        for x in origin:
+            self.assertAlmostEqual(x, 0.5 / 15, places=6)
+        report = self.report()
+        for key in ("seconds", "rays", "rays_per_second", "texels", "peak_memory_bytes", "rmse_estimate", "settings"):
+            self.assertIn(key, report)
+        self.assertTrue({"read", "sites", "trace", "resample", "write", "total"} <= report["seconds"].keys())
+        self.assertEqual(report["texels"], 15**3)
+
+    def test_coloured_light_has_three_channels_first(self):
+        self.write("scene.json", '{"environment": {"type": "uniform", "radiance": [1, 0.5, 0.25]}}')
+        self.bake("--scene", "scene.json", "--bounces", 0)
+        fields, _, data = nrrd_header(self.path("light.nrrd"))
+        self.assertEqual(fields["sizes"], "3 15 15 15")
+        self.assertEqual(fields["kinds"], "vector domain domain domain")
+        r, g, b = struct.unpack_from("<3f", data, 4 * 3 * (7 * 225 + 7 * 15 + 3))
+        self.assertAlmostEqual(r, 2 * g, places=5)
+        self.assertAlmostEqual(r, 4 * b, places=5)
+
+    def test_same_seed_gives_the_same_bytes_for_any_threads(self):
+        for method in ((), ("--samples", 500), ("--samples", 500, "--sampler", "random", "--resampler", "brute_force")):
+            self.bake("--threads", 1, "--seed", 5, *method, out="one.nrrd", volume="gen:gyroid:12", rays=4)
+            self.bake("--threads", 3, "--seed", 5, *method, out="three.nrrd", volume="gen:gyroid:12", rays=4)
+            self.bake("--threads", 3, "--seed", 6, *method, out="other.nrrd", volume="gen:gyroid:12", rays=4)
+            self.assertEqual(self.read("one.nrrd"), self.read("three.nrrd"))
+            self.assertNotEqual(nrrd_header(self.path("one.nrrd"))[2], nrrd_header(self.path("other.nrrd"))[2])
+
+    def test_texels_lattice_and_compression(self):
+        self.bake("--texels", "5x6x7")
+        self.assertEqual(nrrd_header(self.path("light.nrrd"))[0]["sizes"], "5 6 7")
+        self.bake("--lattice", "voxels")
+        fields = nrrd_header(self.path("light.nrrd"))[0]
+        self.assertEqual(fields["sizes"], "16 16 16")
+        self.bake("--compress")
+        self.assertEqual(nrrd_header(self.path("light.nrrd"))[0]["encoding"], "gzip")
+
+    def test_an_error_target_is_met(self):
+        self.bake("--rmse", 0.01, "--report", "report.json", volume="gen:two-spheres:12", rays=16)
+        self.assertLess(self.report()["rmse_estimate"], 0.0115)
+
+    def test_probe_reads_one_on_a_convex_level_set(self):
+        self.bake("--bounces", 0)
+        self.write("points.csv", "x,y,z\n0.5,0.5,0.8\n0.3,0.5,0.5\n9,9,9\n")
+        done = self.succeed("probe", "gen:sphere:16", "--light", "light.nrrd", "--points", "points.csv", "-o", "out.csv")
+        self.assertIn("1 of 3 points lie outside", done.stderr)
+        rows = self.read("out.csv").decode().splitlines()
+        self.assertEqual(rows[0], "x,y,z,isovalue,e")
+        for row, isovalue in zip(rows[1:3], (-0.3, -0.2)):
+            values = [float(v) for v in row.split(",")]
+            self.assertAlmostEqual(values[3], isovalue, delta=0.01)  # trilinear f of 16^3
+            self.assertAlmostEqual(values[4], 1.0, delta=1e-5)       # no ray of a convex level set meets it again
+        self.assertTrue(rows[3].endswith("nan,nan"))
+
+    def test_sigint_stops_cleanly(self):
+        process = subprocess.Popen([ISOLUX, "bake", "gen:gyroid:64", "-o", "light.nrrd", "--rays", "4096"], cwd=self.folder,
+                                   stderr=subprocess.PIPE, text=True)
+        time.sleep(1.0)
+        process.send_signal(signal.SIGINT)
+        _, errors = process.communicate(timeout=60)
+        self.assertEqual(process.returncode, 130, errors)
+        self.assertIn("isolux: error: bake: interrupted", errors)
+        self.assertEqual(os.listdir(self.folder), [])
+
+
+class LightOfAnotherVolume(CommandLineTest):
+    def test_is_refused_unless_forced(self):
+        self.succeed("bake", "gen:sphere:12", "-o", "light.nrrd", "--rays", 1, "--quiet")
+        self.write("points.csv", "0.5,0.5,0.8\n")
+        commands = (("render", "gen:torus:12", "--iso", -0.1, "-o", "out.png", "--size", "20x20"),
+                    ("extract", "gen:torus:12", "--iso", -0.1, "-o", "out.ply"),
+                    ("probe", "gen:torus:12", "--points", "points.csv", "-o", "out.csv"))
+        for command in commands:
+            self.fail(1, *command, "--light", "light.nrrd", says=("light.nrrd", "another volume", "--force"))
+            self.succeed(*command, "--light", "light.nrrd", "--force")
+
+
+class Extract(CommandLineTest):
+    def test_writes_binary_ply_with_normals(self):
+        self.succeed("extract", "gen:sphere:24", "--iso", -0.3, "-o", "mesh.ply", "--report", "report.json")
+        lines, points, triangles = ply(self.path("mesh.ply"))
+        self.assertIn("format binary_little_endian 1.0", lines)
+        self.assertFalse(any("red" in line for line in lines))
+        self.assertEqual(len(points) - 3 * len(triangles) // 2 + len(triangles), 2)  # Euler number of a ball
+        for x, y, z, nx, ny, nz in points:
+            radius = math.dist((x, y, z), (0.5, 0.5, 0.5))
+            self.assertAlmostEqual(radius, 0.3, delta=0.002)
+            self.assertGreater((nx * (x - 0.5) + ny * (y - 0.5) + nz * (z - 0.5)) / radius, 0.99)
+        self.assertEqual(self.report()["triangles"], len(triangles))
+        self.assertEqual(self.report()["vertices"], len(points))
+
+    def test_light_becomes_uchar_colours(self):
+        self.succeed("bake", "gen:sphere:24", "-o", "light.nrrd", "--rays", 4, "--bounces", 0, "--quiet")
+        for light in (("--light", "light.nrrd"), ("--exact-light", "--rays", 64, "--bounces", 0)):
+            self.succeed("extract", "gen:sphere:24", "--iso", -0.3, "-o", "mesh.ply", *light)
+            lines, points, _ = ply(self.path("mesh.ply"))
+            for channel in ("red", "green", "blue"):
+                self.assertIn(f"property uchar {channel}", lines)
+            # e = 1 on a convex level set, and albedo .8 is sRGB code 231; the trilinear sphere has faint creases at the cells' faces,
+            # where the vertices sit, that may catch 1 ray of 64 (code 229).
+            self.assertTrue(all(229 <= code <= 231 for p in points for code in p[6:]))
+
+    def test_isovalue_outside_the_range_is_an_empty_mesh_and_a_warning(self):
+        done = self.succeed("extract", "gen:sphere:8", "--iso", 5, "-o", "mesh.ply")
+        self.assertIn("isolux: warning: isovalue 5 lies outside", done.stderr)
+        self.assertEqual(len(ply(self.path("mesh.ply"))[1]), 0)
+
+
+class Render(CommandLineTest):
+    def test_needs_no_display_and_shows_the_light(self):
+        os.environ.pop("DISPLAY", None)
+        self.succeed("bake", "gen:two-spheres:24", "-o", "light.nrrd", "--rays", 16, "--quiet")
+        for mode in ("local", "global", "both", "normal"):
+            self.succeed("render", "gen:two-spheres:24", "--light", "light.nrrd", "--iso", -0.15, "-o", mode + ".png", "--size", "64x48",
+                         "--mode", mode)
+            self.assertTrue(self.read(mode + ".png").startswith(b"\x89PNG"))
+        self.assertNotEqual(self.read("local.png"), self.read("global.png"))
+        width = struct.unpack(">I", self.read("both.png")[16:20])[0]
+        self.assertEqual(width, 64 + 4 + 64)
+
+
+class Convert(CommandLineTest):
+    def test_keeps_values_and_frame(self):
+        self.succeed("convert", "gen:gyroid:9", "a.nrrd")
+        self.succeed("convert", "a.nrrd", "b.nhdr", "--compress")
+        one, two = (json.loads(self.succeed("info", f, "--json").stdout) for f in ("a.nrrd", "b.nhdr"))
+        self.assertEqual(one["sha256"], two["sha256"])
+
+
+class Program(CommandLineTest):
+    def test_version_and_help(self):
+        self.assertRegex(self.succeed("--version").stdout, r"^isolux \d+\.\d+\.\d+\n$")
+        for command in ("info", "backends", "extract", "bake", "render", "probe", "convert"):
+            self.assertIn(command, self.succeed("--help").stdout)
+            self.assertIn("--", self.succeed(command, "--help").stdout)
+
+    def test_links_no_gl(self):
+        linked = subprocess.run(["ldd", ISOLUX], capture_output=True, text=True, check=True).stdout.lower()
+        for library in ("libgl.", "libglx", "libegl", "libopengl", "libglfw", "libepoxy", "libx11"):
+            self.assertNotIn(library, linked)
+
+
+if __name__ == "__main__":
+    unittest.main()
