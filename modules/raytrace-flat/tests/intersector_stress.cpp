@@ -2,7 +2,6 @@
 #include <gtest/gtest.h>
 #include <isolux/raytrace_flat/level_set_intersector.h>
 
-#include <cstdlib>
 #include <iomanip>
 #include <sstream>
 #include <string>
@@ -13,11 +12,6 @@
 
 namespace isolux::test {
 namespace {
-
-bool full_stress() {
-  const char* wish = std::getenv("ISOLUX_STRESS");
-  return wish != nullptr && std::string(wish) == "full";
-}
 
 enum class Values { kUniform, kSmallWhole, kMostlyConstant, kSaddles, kHugeAndTiny, kTiny, kHuge, kSmooth, kLast };
 enum class Origins { kAnywhere, kOnFace, kOnEdge, kAtVoxel, kHalves, kLast };

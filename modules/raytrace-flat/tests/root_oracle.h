@@ -125,7 +125,8 @@ class RootOracle {
 
   [[nodiscard]] Segment segment(const Vec3& origin, const Vec3& direction, Real begin, Real end) const {
     const Index3 size = volume_.lattice().size;
-    Segment result{.begin = begin, .end = end, .f = {}, .size = 0};
+    // Never zero, so that cells of zeros are undecided as all flat ones are.
+    Segment result{.begin = begin, .end = end, .f = {}, .size = 1e-60L};
     int cell[3];
     Real place[3];
     Real way[3];
@@ -155,8 +156,10 @@ class RootOracle {
   // The first hit if every value of f were `shift` times the noise nearer to the inner side.
   [[nodiscard]] static std::optional<Real> solve(const std::vector<Segment>& way, Real level, Real inner, bool fresh,
                                                  Real shift) {
+    // A start on the level set gives the level, rounded as values of its cell are.
+    const Real level_size = fresh ? way.front().size : 0;
     for (const Segment& part : way) {
-      const Real noise = shift * kNoise * part.size;
+      const Real noise = shift * kNoise * std::max(part.size, level_size);
       const auto& f = part.f;
       std::optional<Real> s;
       if (fresh) {
