@@ -1,13 +1,16 @@
 // What the physics tests share: sites on chosen level sets, and the tracer under test.
 #pragma once
 
+#include <gtest/gtest.h>
 #include <isolux/core/field.h>
 #include <isolux/raytrace_flat/flat_tracer.h>
 
 #include <cmath>
 #include <cstdlib>
 #include <functional>
+#include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "analytic_volume.h"
@@ -75,19 +78,36 @@ namespace isolux::test {
   return {.up = up, .zenith = Vec3f(1.0f), .horizon = Vec3f(1.0f), .ground = Vec3f(0.0f)};
 }
 
-[[nodiscard]] inline TraceResult trace(const Volume& volume, const Scene& scene, Sites sites, int rays, int bounces,
-                                       const Settings& settings = {}, std::uint64_t seed = 1) {
-  Run run;
-  run.seed = seed;
-  return tracers()
-      .create("scalar", settings)
-      ->trace(volume, scene, std::move(sites), {.rays = rays, .bounces = bounces}, run);
+/// A physics test runs for every backend of the catalogue, by name.
+class EveryTracer : public testing::TestWithParam<std::string> {
+ protected:
+  [[nodiscard]] static TraceResult trace(const Volume& volume, const Scene& scene, Sites sites, int rays, int bounces,
+                                         const Settings& settings = {}, std::uint64_t seed = 1) {
+    isolux::Run run;
+    run.seed = seed;
+    return tracers()
+        .create(GetParam(), settings)
+        ->trace(volume, scene, std::move(sites), {.rays = rays, .bounces = bounces}, run);
+  }
+};
+
+[[nodiscard]] inline std::vector<std::string> tracer_names() {
+  std::vector<std::string> names;
+  const auto registry = tracers();
+  for (const BackendInfo& info : registry.backends())
+    if (info.unavailable.empty()) names.push_back(info.name);
+  return names;
 }
 
-/// Root of the mean square of e - expected(site), and its mean.
+#define ISOLUX_FOR_EVERY_TRACER(suite)                                        \
+  INSTANTIATE_TEST_SUITE_P(Tracers, suite, testing::ValuesIn(tracer_names()), \
+                           [](const auto& name) { return name.param; })
+
+/// e - expected(site): root of the mean square, mean, and largest magnitude.
 struct ErrorOfE {
   double rms = 0.0;
   double bias = 0.0;
+  double worst = 0.0;
 };
 [[nodiscard]] inline ErrorOfE error_of(const SampleSet& samples, const std::function<double(std::size_t)>& expected) {
   ErrorOfE error;
@@ -95,6 +115,7 @@ struct ErrorOfE {
     const double d = double(samples.radiance[i * std::size_t(samples.channels)]) - expected(i);
     error.rms += d * d;
     error.bias += d;
+    error.worst = std::max(error.worst, std::abs(d));
   }
   error.rms = std::sqrt(error.rms / double(samples.size()));
   error.bias /= double(samples.size());
