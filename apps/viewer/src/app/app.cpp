@@ -1,0 +1,108 @@
+#include "app/app.h"
+
+#include <isolux/core/error.h>
+#include <isolux/render/image.h>
+#include <isolux/volume_io/atomic_file.h>
+#include <isolux/volume_io/read.h>
+
+#include <utility>
+
+#include "app/window.h"
+#include "gl/read_pixels.h"
+
+namespace isolux::viewer {
+namespace {
+
+class App final : public WindowListener {
+ public:
+  App(Document document, const AppSettings& settings, const Stages& stages)
+      : settings_(settings),
+        stages_(stages),
+        window_(settings.width, settings.height, "isolux", *this),
+        viewer_(std::move(document), settings.viewer, stages, Window::wake) {}
+
+  void run() {
+    int drawn = 0;
+    while (!window_.closing() && !viewer_.quit()) {
+      const bool settled = viewer_.settled();
+      if (viewer_.update() || dirty_ || settings_.frames > 0) {
+        draw();
+        // Only pictures of the finished surface count.
+        if (settled && settings_.frames > 0 && ++drawn >= settings_.frames) break;
+      }
+      // With a number of frames to draw, the next one needs no event.
+      if (settings_.frames > 0 && viewer_.settled()) {
+        window_.poll_events();
+      } else {
+        window_.wait_events();
+      }
+    }
+    if (!settings_.screenshot.empty()) save_picture(settings_.screenshot);
+  }
+
+  void on_key(int key, int modifiers) override {
+    if (const auto action = action_of(key, modifiers)) viewer_.act(*action);
+    dirty_ = true;
+  }
+  void on_press(MouseButton button, double x, double y) override {
+    viewer_.press(button, x, y);
+    dirty_ = true;
+  }
+  void on_move(double x, double y) override { dirty_ = viewer_.move(x, y) || dirty_; }
+  void on_release() override { viewer_.release(); }
+  void on_scroll(double steps) override {
+    viewer_.scroll(steps);
+    dirty_ = true;
+  }
+  void on_redraw() override { dirty_ = true; }
+  void on_drop(const std::string& path) override {
+    dirty_ = true;
+    try {
+      Volume volume = read_volume(path, {}, settings_.viewer.run, stages_.readers);
+      require_usable(volume);
+      viewer_.open(make_document(std::move(volume)));
+    } catch (const Error& error) {
+      viewer_.say(error.what());
+    }
+  }
+
+ private:
+  void draw() {
+    dirty_ = false;
+    viewer_.draw(window_.size());
+    window_.set_title(viewer_.title());
+    window_.swap();
+    if (const auto path = viewer_.take_screenshot_request()) {
+      try {
+        save_picture(*path);
+        viewer_.say("wrote " + *path);
+      } catch (const Error& error) {
+        viewer_.say(error.what());
+      }
+      dirty_ = true;
+      Window::wake();
+    }
+  }
+
+  /// Draws the surface alone into the hidden half of the window's picture and writes that.
+  void save_picture(const std::string& path) {
+    const WindowSize size = window_.size();
+    viewer_.draw_surface(size);
+    const Image image = read_pixels(size.width, size.height);
+    write_atomically_by_name(path, [&](const std::string& temporary) { write_png(image, temporary); });
+  }
+
+  const AppSettings& settings_;
+  const Stages& stages_;
+  Window window_;
+  Viewer viewer_;
+  bool dirty_ = true;
+};
+
+}  // namespace
+
+void run_app(Document document, const AppSettings& settings, const Stages& stages) {
+  App(std::move(document), settings, stages).run();
+}
+
+}  // namespace isolux::viewer

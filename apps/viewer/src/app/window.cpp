@@ -1,0 +1,126 @@
+#include "app/window.h"
+
+#include <fmt/format.h>
+#include <isolux/core/error.h>
+
+#define GLFW_INCLUDE_NONE
+#include <GLFW/glfw3.h>
+
+#include <cmath>
+
+namespace isolux::viewer {
+namespace {
+
+std::string last_error() {
+  const char* text = nullptr;
+  glfwGetError(&text);
+  return text != nullptr ? text : "no reason given";
+}
+
+WindowListener& listener(GLFWwindow* window) { return *static_cast<WindowListener*>(glfwGetWindowUserPointer(window)); }
+
+/// From screen coordinates to framebuffer pixels: they differ on displays of high density.
+double pixels_a_coordinate(GLFWwindow* window) {
+  int width = 1;
+  int pixels = 1;
+  glfwGetWindowSize(window, &width, nullptr);
+  glfwGetFramebufferSize(window, &pixels, nullptr);
+  return width > 0 ? double(pixels) / width : 1.0;
+}
+
+void on_key(GLFWwindow* window, int key, int /*scancode*/, int action, int modifiers) {
+  if (action != GLFW_RELEASE) listener(window).on_key(key, modifiers);
+}
+
+void on_button(GLFWwindow* window, int button, int action, int modifiers) {
+  if (action == GLFW_RELEASE) {
+    listener(window).on_release();
+    return;
+  }
+  double x = 0.0;
+  double y = 0.0;
+  glfwGetCursorPos(window, &x, &y);
+  const double scale = pixels_a_coordinate(window);
+  MouseButton meant = MouseButton::kLeft;
+  if (button == GLFW_MOUSE_BUTTON_RIGHT) meant = MouseButton::kRight;
+  if (button == GLFW_MOUSE_BUTTON_MIDDLE || (button == GLFW_MOUSE_BUTTON_LEFT && (modifiers & GLFW_MOD_SHIFT) != 0)) {
+    meant = MouseButton::kMiddle;
+  }
+  listener(window).on_press(meant, x * scale, y * scale);
+}
+
+void on_move(GLFWwindow* window, double x, double y) {
+  const double scale = pixels_a_coordinate(window);
+  listener(window).on_move(x * scale, y * scale);
+}
+
+void on_scroll(GLFWwindow* window, double /*x*/, double y) { listener(window).on_scroll(y); }
+
+void on_drop(GLFWwindow* window, int count, const char** paths) {
+  if (count > 0) listener(window).on_drop(paths[count - 1]);
+}
+
+void on_refresh(GLFWwindow* window) { listener(window).on_redraw(); }
+
+void on_size(GLFWwindow* window, int /*width*/, int /*height*/) { listener(window).on_redraw(); }
+
+}  // namespace
+
+WindowSystem::WindowSystem() {
+  if (glfwInit() != GLFW_TRUE) {
+    throw GlError(fmt::format("no display: {}; isolux render draws without one", last_error()));
+  }
+}
+
+WindowSystem::~WindowSystem() { glfwTerminate(); }
+
+Window::Window(int width, int height, const std::string& title, WindowListener& events) : window_(nullptr) {
+  glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, 3);
+  glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 3);
+  glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
+  glfwWindowHint(GLFW_OPENGL_FORWARD_COMPAT, GLFW_TRUE);
+  glfwWindowHint(GLFW_SCALE_TO_MONITOR, GLFW_TRUE);
+  glfwWindowHint(GLFW_SAMPLES, 4);
+  window_ = glfwCreateWindow(width, height, title.c_str(), nullptr, nullptr);
+  if (window_ == nullptr) {
+    // Some remote displays have no multisampling.
+    glfwWindowHint(GLFW_SAMPLES, 0);
+    window_ = glfwCreateWindow(width, height, title.c_str(), nullptr, nullptr);
+  }
+  if (window_ == nullptr) throw GlError(fmt::format("no window with OpenGL 3.3: {}", last_error()));
+  glfwMakeContextCurrent(window_);
+  glfwSwapInterval(1);
+  glfwSetWindowUserPointer(window_, &events);
+  glfwSetKeyCallback(window_, on_key);
+  glfwSetMouseButtonCallback(window_, on_button);
+  glfwSetCursorPosCallback(window_, on_move);
+  glfwSetScrollCallback(window_, on_scroll);
+  glfwSetDropCallback(window_, on_drop);
+  glfwSetWindowRefreshCallback(window_, on_refresh);
+  glfwSetFramebufferSizeCallback(window_, on_size);
+}
+
+Window::~Window() { glfwDestroyWindow(window_); }
+
+WindowSize Window::size() const {
+  WindowSize result;
+  glfwGetFramebufferSize(window_, &result.width, &result.height);
+  float scale = 1.0f;
+  glfwGetWindowContentScale(window_, &scale, nullptr);
+  result.scale = std::max(1.0, std::round(2.0 * double(scale)) / 2.0);
+  return result;
+}
+
+bool Window::closing() const { return glfwWindowShouldClose(window_) == GLFW_TRUE; }
+
+void Window::set_title(const std::string& title) { glfwSetWindowTitle(window_, title.c_str()); }
+
+void Window::swap() { glfwSwapBuffers(window_); }
+
+void Window::poll_events() { glfwPollEvents(); }
+
+void Window::wait_events() { glfwWaitEvents(); }
+
+void Window::wake() { glfwPostEmptyEvent(); }
+
+}  // namespace isolux::viewer

@@ -1,0 +1,59 @@
+#pragma once
+
+#include <epoxy/gl.h>
+
+#include <cstddef>
+#include <span>
+#include <string>
+
+namespace isolux::viewer {
+
+/// A linked program of two shaders. Like all here: made, used and destroyed with the same context current.
+class ShaderProgram {
+ public:
+  /// \throw GlError with the first line of the driver's log
+  ShaderProgram(const char* vertex_source, const char* fragment_source);
+  ShaderProgram(const ShaderProgram&) = delete;
+  ShaderProgram& operator=(const ShaderProgram&) = delete;
+  ~ShaderProgram() { glDeleteProgram(name_); }
+
+  void use() const { glUseProgram(name_); }
+  [[nodiscard]] GLint uniform(const char* uniform_name) const { return glGetUniformLocation(name_, uniform_name); }
+
+ private:
+  GLuint name_;
+};
+
+/// A vertex array object.
+class VertexArray {
+ public:
+  VertexArray() { glGenVertexArrays(1, &name_); }
+  VertexArray(const VertexArray&) = delete;
+  VertexArray& operator=(const VertexArray&) = delete;
+  ~VertexArray() { glDeleteVertexArrays(1, &name_); }
+
+  void bind() const { glBindVertexArray(name_); }
+
+ private:
+  GLuint name_ = 0;
+};
+
+/// A buffer object. It grows by need and is kept when less is filled in.
+class Buffer {
+ public:
+  explicit Buffer(GLenum target) : target_(target) { glGenBuffers(1, &name_); }
+  Buffer(const Buffer&) = delete;
+  Buffer& operator=(const Buffer&) = delete;
+  ~Buffer() { glDeleteBuffers(1, &name_); }
+
+  void bind() const { glBindBuffer(target_, name_); }
+  /// Binds it and replaces its content. \throw GlError if OpenGL has no memory for it
+  void fill(const void* data, std::size_t bytes);
+
+ private:
+  GLenum target_;
+  GLuint name_ = 0;
+  std::size_t capacity_ = 0;
+};
+
+}  // namespace isolux::viewer

@@ -1,0 +1,100 @@
+#include "gl/surface_renderer.h"
+
+#include <isolux/gl_texture/texture_uploader.h>
+
+#include <glm/geometric.hpp>
+#include <glm/gtc/type_ptr.hpp>
+#include <glm/mat4x4.hpp>
+#include <glm/matrix.hpp>
+
+#include "camera/framing.h"
+#include "gl/shader_sources.h"
+
+namespace isolux::viewer {
+namespace {
+
+constexpr Vec3f kLineColour(0.08f, 0.1f, 0.2f);
+
+template <class T>
+std::size_t bytes(const std::vector<T>& values) {
+  return values.size() * sizeof(T);
+}
+
+}  // namespace
+
+SurfaceRenderer::SurfaceRenderer(const Lattice& volume)
+    : volume_(volume),
+      centre_(box_middle(volume)),
+      radius_(box_radius(volume)),
+      program_(kSurfaceVertexShader, kSurfaceFragmentShader) {
+  vertex_array_.bind();
+  const Buffer* attributes[2] = {&positions_, &normals_};
+  for (GLuint i = 0; i < 2; ++i) {
+    attributes[i]->bind();
+    glEnableVertexAttribArray(i);
+    glVertexAttribPointer(i, 3, GL_FLOAT, GL_FALSE, 0, nullptr);
+  }
+  indices_.bind();
+}
+
+void SurfaceRenderer::set_surface(const IndexedMesh& mesh) {
+  index_count_ = 0;
+  vertex_array_.bind();
+  positions_.fill(mesh.positions.data(), bytes(mesh.positions));
+  normals_.fill(mesh.normals.data(), bytes(mesh.normals));
+  indices_.fill(mesh.triangles.data(), bytes(mesh.triangles));
+  index_count_ = GLsizei(mesh.triangles.size() * 3);
+}
+
+void SurfaceRenderer::set_light(const IlluminationGrid& light) {
+  light_ = uploaders().create()->upload(light, volume_);
+}
+
+void SurfaceRenderer::draw(const SurfaceView& view) const {
+  if (index_count_ == 0) return;
+  const bool global = view.lighting == Lighting::kGlobal && light_;
+  const Vec3 centre(centre_);
+  const glm::mat4 clip(clip_from_centred(view.camera, centre, radius_, view.aspect));
+  // Place in the box from a position relative to the box's middle, whose place is 1/2 on each axis.
+  Mat3 axes = volume_.frame.axes;
+  for (int a = 0; a < 3; ++a) axes[a] *= double(volume_.size[a] - 1);
+  const glm::mat3 place(glm::inverse(axes));
+  const Vec3f eye(view.camera.eye - centre);
+  program_.use();
+  glUniform3fv(program_.uniform("centre"), 1, glm::value_ptr(centre_));
+  glUniformMatrix4fv(program_.uniform("clip_from_centred"), 1, GL_FALSE, glm::value_ptr(clip));
+  glUniformMatrix3fv(program_.uniform("place_from_centred"), 1, GL_FALSE, glm::value_ptr(place));
+  glUniform3fv(program_.uniform("eye"), 1, glm::value_ptr(eye));
+  glUniform3fv(program_.uniform("albedo"), 1, glm::value_ptr(view.albedo));
+  glUniform1f(program_.uniform("exposure"), view.exposure);
+  glUniform1i(program_.uniform("global_light"), global ? 1 : 0);
+  glUniform1i(program_.uniform("flat_colour"), 0);
+  glUniform3fv(program_.uniform("line_colour"), 1, glm::value_ptr(kLineColour));
+  glUniform1i(program_.uniform("light"), 0);
+  if (global) {
+    const Vec3f scale(light_->scale());
+    const Vec3f offset(light_->offset());
+    glUniform3fv(program_.uniform("light_scale"), 1, glm::value_ptr(scale));
+    glUniform3fv(program_.uniform("light_offset"), 1, glm::value_ptr(offset));
+    glUniform1f(program_.uniform("light_gain"), float(light_->gain()));
+    glActiveTexture(GL_TEXTURE0);
+    glBindTexture(GL_TEXTURE_3D, light_->name());
+  }
+  glEnable(GL_DEPTH_TEST);
+  vertex_array_.bind();
+  const bool triangles = view.style == SurfaceStyle::kTriangles;
+  if (triangles) {
+    // Pushed back so that the lines on the same triangles win the depth test.
+    glEnable(GL_POLYGON_OFFSET_FILL);
+    glPolygonOffset(1.0f, 1.0f);
+  }
+  glDrawElements(GL_TRIANGLES, index_count_, GL_UNSIGNED_INT, nullptr);
+  if (!triangles) return;
+  glDisable(GL_POLYGON_OFFSET_FILL);
+  glUniform1i(program_.uniform("flat_colour"), 1);
+  glPolygonMode(GL_FRONT_AND_BACK, GL_LINE);
+  glDrawElements(GL_TRIANGLES, index_count_, GL_UNSIGNED_INT, nullptr);
+  glPolygonMode(GL_FRONT_AND_BACK, GL_FILL);
+}
+
+}  // namespace isolux::viewer

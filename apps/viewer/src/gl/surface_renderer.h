@@ -1,0 +1,55 @@
+#pragma once
+
+#include <isolux/core/illumination_grid.h>
+#include <isolux/gl_texture/texture3d.h>
+#include <isolux/mc_extract/indexed_mesh.h>
+#include <isolux/render/camera.h>
+
+#include <optional>
+
+#include "gl/objects.h"
+#include "ui/panes.h"
+
+namespace isolux::viewer {
+
+enum class SurfaceStyle { kShaded, kTriangles };
+
+/// One view of the surface.
+struct SurfaceView {
+  Camera camera;
+  Lighting lighting = Lighting::kLocal;
+  SurfaceStyle style = SurfaceStyle::kShaded;
+  Vec3f albedo{0.8f};
+  float exposure = 1.0f;  ///< factor before the sRGB curve
+  double aspect = 1.0;    ///< width over height of OpenGL's viewport
+};
+
+/// Draws an isosurface of a volume, lit locally or by its 3D texture, as 8-bit sRGB codes.
+class SurfaceRenderer {
+ public:
+  /// Needs a current OpenGL 3.3 core context, as all that follows. \throw GlError
+  explicit SurfaceRenderer(const Lattice& volume);
+
+  /// \throw GlError if OpenGL has no memory for it
+  void set_surface(const IndexedMesh& mesh);
+  /// \throw GlError, InvalidInput as TextureUploader::upload
+  void set_light(const IlluminationGrid& light);
+  [[nodiscard]] bool has_light() const { return light_.has_value(); }
+
+  /// Into the current framebuffer and viewport, with depth test. Global lighting without a light draws local.
+  void draw(const SurfaceView& view) const;
+
+ private:
+  Lattice volume_;
+  Vec3f centre_;
+  double radius_ = 0.0;
+  ShaderProgram program_;
+  VertexArray vertex_array_;
+  Buffer positions_{GL_ARRAY_BUFFER};
+  Buffer normals_{GL_ARRAY_BUFFER};
+  Buffer indices_{GL_ELEMENT_ARRAY_BUFFER};
+  GLsizei index_count_ = 0;
+  std::optional<Texture3D> light_;
+};
+
+}  // namespace isolux::viewer

@@ -1,0 +1,137 @@
+// isolux-view: the interactive window. `isolux view` starts it with the arguments that it was given.
+#include <fmt/format.h>
+#include <isolux/bake/version.h>
+#include <isolux/core/error.h>
+#include <isolux/volume_io/read.h>
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <exception>
+#include <new>
+#include <optional>
+#include <string>
+#include <tuple>
+#include <utility>
+#include <vector>
+
+#include "app/app.h"
+#include "app/window.h"
+#include "light_options.h"
+#include "parse.h"
+#include "session.h"
+#include "volume_options.h"
+
+namespace {
+
+using namespace isolux;
+
+enum ExitStatus { kDone = 0, kFailed = 1, kUsage = 2 };
+
+int complain(std::string why, ExitStatus status) {
+  for (char& c : why) {
+    if (c == '\n') c = ' ';
+  }
+  fmt::print(stderr, "isolux: error: view: {}\n", why);
+  return status;
+}
+
+/// The words of the command line, besides those that other commands have too.
+struct Words {
+  VolumeOptions volume;
+  LightOptions light;
+  std::optional<double> isovalue;
+  std::string screenshot;
+  int frames = 0;
+  std::string size = "1200x800";
+  std::string view = "30,20";
+  std::string mode;
+  double exposure = 0.0;
+  std::string outer;
+  std::string backend;
+  std::vector<std::string> set;
+
+  void add_to(CLI::App& program) {
+    volume.add_to(program);
+    program.get_option("VOLUME")->required(false)->description(
+        "a file, a folder of DICOM slices, or gen:NAME[:N]; without one a test field is shown");
+    light.add_to(program);
+    program.add_option("--iso", isovalue, "isovalue to start with (default: Otsu's threshold)")->type_name("H");
+    program.add_option("--mode", mode, "global (default with --light), local, or both side by side")
+        ->check(CLI::IsMember({"global", "local", "both"}));
+    program.add_option("--view", view, "from where, in degrees (default 30,20)")->type_name("AZIMUTH,ELEVATION");
+    program.add_option("--exposure", exposure, "stops by which the picture is made brighter")->type_name("STOPS");
+    program
+        .add_option("--outer", outer, "the side that is outside: lower or higher values (default: what the light says)")
+        ->check(CLI::IsMember({"lower", "higher"}));
+    program.add_option("--backend", backend, "extractor backend")->type_name("NAME");
+    program.add_option("--set", set, "an option of the extractor")->type_name("KEY=VALUE");
+    program.add_option("--size", size, "of the window (default 1200x800)")->type_name("WxH");
+    program.add_option("--screenshot", screenshot, "write a picture before leaving")->type_name("OUT.png");
+    program.add_option("--frames", frames, "draw so many pictures and leave")
+        ->check(CLI::Range(1, 1000000))
+        ->type_name("N");
+  }
+
+  /// \throw UsageError
+  [[nodiscard]] viewer::AppSettings settings(const Session& session) const {
+    viewer::AppSettings result;
+    std::tie(result.width, result.height) = parse_size2("--size", size);
+    const auto angles = parse_numbers("--view", view, 2);
+    result.frames = frames == 0 && !screenshot.empty() ? 1 : frames;
+    result.screenshot = screenshot;
+    result.viewer.isovalue = isovalue;
+    result.viewer.azimuth_deg = angles[0];
+    result.viewer.elevation_deg = angles[1];
+    result.viewer.exposure_stops = exposure;
+    result.viewer.help = volume.source().empty();
+    result.viewer.extractor.name = backend;
+    apply_settings(set, {{"extractor", &result.viewer.extractor.settings}});
+    result.viewer.run = session.run;
+    if (!outer.empty()) result.viewer.outer = outer == "higher" ? OuterSide::kHigher : OuterSide::kLower;
+    if (mode == "local") result.viewer.layout = viewer::Layout::kLocal;
+    if (mode == "global") result.viewer.layout = viewer::Layout::kGlobal;
+    if (mode == "both") result.viewer.layout = viewer::Layout::kSideBySide;
+    if (mode != "local" && !mode.empty() && !light.given()) {
+      throw UsageError("--mode " + mode + ": it shows a light; give --light LIGHT.nrrd");
+    }
+    return result;
+  }
+};
+
+int view(int argc, char** argv) {
+  Session session;
+  Words words;
+  CLI::App program("Looks at the isosurfaces of a volume, in local and in global light.", "isolux view");
+  program.set_version_flag("--version", std::string("isolux ") + kVersion);
+  words.add_to(program);
+  session.add_common_options(program);
+  try {
+    program.parse(argc, argv);
+  } catch (const CLI::Success& help) {
+    return program.exit(help);
+  } catch (const CLI::ParseError& error) {
+    return complain(error.what(), kUsage);
+  }
+  const viewer::AppSettings settings = words.settings(session);
+  const viewer::WindowSystem windows;
+  const bool given = !words.volume.source().empty();
+  Volume volume = given ? words.volume.read(session) : read_volume("gen:marschner-lobb", {}, session.run);
+  viewer::Document document = viewer::make_document(std::move(volume));
+  if (words.light.given()) document.light = words.light.read(*document.volume, session);
+  viewer::run_app(std::move(document), settings, session.stages);
+  return kDone;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  try {
+    return view(argc, argv);
+  } catch (const isolux::UsageError& error) {
+    return complain(error.what(), kUsage);
+  } catch (const std::bad_alloc&) {
+    return complain("not enough memory", kFailed);
+  } catch (const std::exception& error) {
+    return complain(error.what(), kFailed);
+  }
+}

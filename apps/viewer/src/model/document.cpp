@@ -1,0 +1,71 @@
+#include "model/document.h"
+
+#include <fmt/format.h>
+#include <isolux/bake/light_metadata.h>
+#include <isolux/mc_extract/write_mesh.h>
+#include <isolux/render/image.h>
+#include <isolux/volume_io/atomic_file.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <utility>
+
+namespace isolux::viewer {
+
+Document make_document(Volume volume) {
+  Document document;
+  document.volume = std::make_shared<const Volume>(std::move(volume));
+  document.histogram = make_histogram(*document.volume);
+  return document;
+}
+
+Vec3f albedo_of(const Document& document, float isovalue) {
+  return document.light ? light_albedo(*document.light, isovalue) : Scene{}.albedo.at(isovalue);
+}
+
+Index3 draft_texels(Index3 volume_size, double most) {
+  const Vec3 cells(volume_size - 1);
+  const double factor = std::min(1.0, std::cbrt(most / (cells.x * cells.y * cells.z)));
+  return glm::max(Index3(cells * factor), Index3(1));
+}
+
+LightFile bake_draft(const Volume& volume, const Stages& stages, const Run& run) {
+  BakeSettings settings;
+  settings.trace.rays = 16;
+  settings.texels = draft_texels(volume.lattice().size, 1e6);
+  const Scene scene;
+  return make_light_file(bake(volume, scene, settings, stages, run), volume, scene, settings, run);
+}
+
+void export_surface(const Document& document, const Stages& stages, const BackendChoice& extractor,
+                    const ExtractSettings& settings, const Run& run, const std::string& path) {
+  const IsoMesh mesh =
+      stages.extractors.create(extractor.name, extractor.settings)->extract(*document.volume, settings, run);
+  std::vector<Rgb8> colours;
+  if (document.light) {
+    const Vec3f albedo = albedo_of(document, settings.isovalue);
+    colours.reserve(mesh.n_vertices());
+    for (const auto v : mesh.vertices()) {
+      const auto& p = mesh.point(v);
+      const Vec3f shown = albedo * document.light->grid.at_world({p[0], p[1], p[2]});
+      colours.push_back({srgb_code(shown.x), srgb_code(shown.y), srgb_code(shown.z)});
+    }
+  }
+  write_atomically_by_name(path, [&](const std::string& temporary) { write_ply(mesh, colours, temporary); });
+}
+
+std::string free_file_name(const std::string& volume_name, double isovalue, const std::string& extension) {
+  std::string stem = std::filesystem::path(volume_name).stem().string();
+  if (stem.empty()) stem = "volume";
+  for (char& c : stem) {
+    if (c == ':') c = '_';
+  }
+  std::string name = fmt::format("{}-{:.6g}.{}", stem, isovalue, extension);
+  for (int i = 2; std::filesystem::exists(name); ++i) {
+    name = fmt::format("{}-{:.6g}-{}.{}", stem, isovalue, i, extension);
+  }
+  return name;
+}
+
+}  // namespace isolux::viewer

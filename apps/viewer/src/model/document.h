@@ -1,0 +1,41 @@
+#pragma once
+
+#include <isolux/bake/bake.h>
+#include <isolux/core/volume.h>
+#include <isolux/volume_io/light_file.h>
+
+#include <memory>
+#include <optional>
+
+#include "model/histogram.h"
+
+namespace isolux::viewer {
+
+/// What is looked at: a volume and, once there is one, its light.
+struct Document {
+  std::shared_ptr<const Volume> volume;  ///< shared with the threads that work on it
+  Histogram histogram;
+  std::optional<LightFile> light;
+};
+
+/// \pre require_usable(volume)
+[[nodiscard]] Document make_document(Volume volume);
+
+/// The albedo that the light's scene gives this isovalue; 0.8 without a light.
+[[nodiscard]] Vec3f albedo_of(const Document& document, float isovalue);
+
+/// A light that is soon there: few rays, and at most about a million texels. \throw as bake()
+[[nodiscard]] LightFile bake_draft(const Volume& volume, const Stages& stages, const Run& run);
+
+/// Texels of a draft: one a cell, fewer by the same factor on each axis where that would be more than `most`.
+[[nodiscard]] Index3 draft_texels(Index3 volume_size, double most);
+
+/// Writes the surface as PLY with the light at its vertices as colours, in sRGB as it is shown; without colours if
+/// there is no light. \throw IoError, InvalidInput
+void export_surface(const Document& document, const Stages& stages, const BackendChoice& extractor,
+                    const ExtractSettings& settings, const Run& run, const std::string& path);
+
+/// "STEM-ISOVALUE.EXTENSION" in the current folder, or STEM-ISOVALUE-2, -3, ... where that exists.
+[[nodiscard]] std::string free_file_name(const std::string& volume_name, double isovalue, const std::string& extension);
+
+}  // namespace isolux::viewer

@@ -1,0 +1,46 @@
+#version 330 core
+
+in vec3 centred;
+in vec3 outward;
+in vec3 place;
+
+uniform vec3 eye;       // relative to the centre
+uniform vec3 albedo;
+uniform float exposure;
+uniform bool global_light;
+uniform sampler3D light;
+uniform vec3 light_scale;
+uniform vec3 light_offset;
+uniform float light_gain;
+uniform bool flat_colour;  // for lines
+uniform vec3 line_colour;
+
+out vec4 colour;
+
+// A headlight over the viewer's shoulder and a hemisphere of sky above +z, as isolux render draws them.
+float local_light(vec3 n) {
+  float head = max(0.0, dot(n, normalize(eye - centred)));
+  return 0.7 * head + 0.15 * (1.0 + n.z);
+}
+
+vec3 srgb(vec3 linear) {
+  vec3 v = clamp(linear, 0.0, 1.0);
+  return mix(1.055 * pow(v, vec3(1.0 / 2.4)) - 0.055, 12.92 * v, lessThanEqual(v, vec3(0.0031308)));
+}
+
+void main() {
+  if (flat_colour) {
+    colour = vec4(line_colour, 1.0);
+    return;
+  }
+  vec3 n = outward * inversesqrt(max(dot(outward, outward), 1e-30));
+  vec3 radiance;
+  if (!global_light) {
+    radiance = albedo * local_light(gl_FrontFacing ? n : -n);
+  } else if (gl_FrontFacing) {
+    radiance = albedo * light_gain * texture(light, light_scale * place + light_offset).rgb;
+  } else {
+    radiance = albedo * 0.1 * local_light(-n);  // the inner side has no light of its own
+  }
+  colour = vec4(srgb(exposure * radiance), 1.0);
+}

@@ -1,0 +1,19 @@
+#version 330 core
+
+layout(location = 0) in vec3 position;  // world
+layout(location = 1) in vec3 normal;    // world
+
+uniform vec3 centre;             // world; what follows is relative to it, so that far origins lose no bits
+uniform mat4 clip_from_centred;
+uniform mat3 place_from_centred;  // to the place in the volume's box, whose middle is the centre
+
+out vec3 centred;
+out vec3 outward;
+out vec3 place;
+
+void main() {
+  centred = position - centre;
+  outward = normal;
+  place = place_from_centred * centred + 0.5;
+  gl_Position = clip_from_centred * vec4(centred, 1.0);
+}

@@ -1,0 +1,126 @@
+#include <gtest/gtest.h>
+#include <isolux/core/error.h>
+
+#include <atomic>
+#include <chrono>
+#include <future>
+#include <thread>
+
+#include "model/bake_worker.h"
+#include "model/document.h"
+#include "model/histogram.h"
+#include "model/surface_worker.h"
+
+namespace isolux::viewer {
+namespace {
+
+Volume volume_of(std::vector<float> values) {
+  Volume volume;
+  volume.values = Grid<float>({.size = {int(values.size()) / 4, 2, 2}, .frame = {}}, std::move(values));
+  return volume;
+}
+
+TEST(Histogram, CountsEveryValueOnce) {
+  const Histogram histogram = make_histogram(volume_of({0, 0, 0, 1, 2, 3, 4, 5, 5, 5, 5, 10}));
+  std::uint64_t sum = 0;
+  for (const auto count : histogram.counts) sum += count;
+  EXPECT_EQ(sum, 12u);
+  EXPECT_EQ(histogram.counts.front(), 3u);
+  EXPECT_EQ(histogram.counts.back(), 1u);
+}
+
+TEST(Histogram, PartsTwoClassesBetweenThem) {
+  const double threshold =
+      otsu_threshold(make_histogram(volume_of({10, 11, 12, 10, 11, 12, 10, 11, 200, 201, 199, 200})));
+  EXPECT_GT(threshold, 12.0);
+  EXPECT_LT(threshold, 199.0);
+}
+
+TEST(Histogram, GivesAConstantVolumeItsValue) {
+  EXPECT_EQ(otsu_threshold(make_histogram(volume_of(std::vector<float>(8, 3.0f)))), 3.0);
+}
+
+/// Surfaces that only carry their settings; each waits until it is let through.
+class Gate {
+ public:
+  Surface pass(const ExtractSettings& settings, const std::stop_token& stop) {
+    ++entered;
+    while (!open) {
+      if (stop.stop_requested()) throw Cancelled("interrupted");
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
+    Surface surface;
+    surface.settings = settings;
+    return surface;
+  }
+  std::atomic<int> entered{0};
+  std::atomic<bool> open{false};
+};
+
+TEST(SurfaceWorker, MakesTheNewestRequestAndSkipsThoseBetween) {
+  Gate gate;
+  SurfaceWorker worker([&](const ExtractSettings& s, const std::stop_token& stop) { return gate.pass(s, stop); },
+                       [] {});
+  EXPECT_TRUE(worker.idle());
+  worker.request({.isovalue = 0.0f});
+  while (gate.entered == 0) std::this_thread::yield();
+  for (int i = 1; i <= 100; ++i) worker.request({.isovalue = float(i)});
+  EXPECT_FALSE(worker.idle());
+  gate.open = true;
+  float last = -1.0f;
+  while (!worker.idle()) {
+    if (const auto surface = worker.take()) last = surface->settings.isovalue;
+    std::this_thread::yield();
+  }
+  EXPECT_EQ(last, 100.0f);
+  EXPECT_EQ(gate.entered, 2);
+}
+
+TEST(SurfaceWorker, StopsInTheMiddleOfASurface) {
+  Gate gate;
+  {
+    SurfaceWorker worker([&](const ExtractSettings& s, const std::stop_token& stop) { return gate.pass(s, stop); },
+                         [] {});
+    worker.request({});
+    while (gate.entered == 0) std::this_thread::yield();
+  }
+  EXPECT_EQ(gate.entered, 1);
+}
+
+TEST(BakeWorker, HandsOverTheLightOrTheReason) {
+  for (const bool fails : {false, true}) {
+    std::promise<void> done;
+    std::atomic<int> calls{0};
+    BakeWorker worker(
+        {},
+        [&](const isolux::Run& run) {
+          run.progress("trace", 0.5);
+          if (fails) throw InvalidInput("no light today");
+          return LightFile{};
+        },
+        [&] {
+          // Once for the progress, once for the outcome.
+          if (++calls == 2) done.set_value();
+        });
+    done.get_future().wait();
+    EXPECT_EQ(worker.progress().stage, "trace");
+    EXPECT_EQ(worker.progress().fraction, 0.5);
+    const auto outcome = worker.take();
+    ASSERT_TRUE(outcome.has_value());
+    EXPECT_EQ(outcome->light.has_value(), !fails);
+    EXPECT_EQ(outcome->error, fails ? "no light today" : "");
+    EXPECT_FALSE(worker.take().has_value());
+  }
+}
+
+TEST(Draft, HasAtMostAMillionTexelsInTheVolumesProportions) {
+  EXPECT_EQ(draft_texels({65, 33, 17}, 1e6), Index3(64, 32, 16)) << "one a cell where they are few";
+  const Index3 large = draft_texels({513, 513, 257}, 1e6);
+  EXPECT_LE(double(large.x) * large.y * large.z, 1e6);
+  EXPECT_GT(double(large.x) * large.y * large.z, 0.9e6);
+  EXPECT_NEAR(double(large.x) / large.z, 2.0, 0.03) << "whole texels";
+  EXPECT_EQ(draft_texels({1000001, 2, 2}, 1e3), Index3(1000000 / 10, 1, 1)) << "a factor of ten an axis";
+}
+
+}  // namespace
+}  // namespace isolux::viewer
