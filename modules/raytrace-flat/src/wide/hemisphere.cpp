@@ -1,0 +1,109 @@
+// Compiled once per instruction set.
+#define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV)
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "wide/hemisphere.cpp"
+#include <hwy/foreach_target.h>
+// After foreach_target.h.
+#include <hwy/contrib/math/math-inl.h>
+#include <hwy/highway.h>
+
+#include <algorithm>
+#include <cmath>
+#include <glm/matrix.hpp>
+
+#include "wide/hemisphere.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace isolux::wide {
+namespace HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+using FloatTag = hn::ScalableTag<float>;
+using Floats = hn::Vec<FloatTag>;
+
+/// The upper 24 bits of shifted fractions as floats in [0, 1).
+HWY_INLINE Floats unit(const std::uint32_t* points, std::uint32_t shift) {
+  const FloatTag f;
+  const hn::RebindToUnsigned<FloatTag> u;
+  const hn::RebindToSigned<FloatTag> i;
+  const auto bits = hn::ShiftRight<8>(hn::Xor(hn::LoadU(u, points), hn::Set(u, shift)));
+  return hn::Mul(hn::ConvertTo(f, hn::BitCast(i, bits)), hn::Set(f, 0x1p-24f));
+}
+
+void aim(const Pose& pose, const SobolPoints& points, std::size_t first, std::size_t count, const ToIndex& to_index,
+         std::size_t at, Rays& rays, Directions& world) {
+  const FloatTag f;
+  const float* n = pose.normal;
+  // The frame of Duff et al., "Building an orthonormal basis, revisited" (JCGT 2017).
+  const float sign = std::copysign(1.0f, n[2]);
+  const float a = -1.0f / (sign + n[2]);
+  const float b = n[0] * n[1] * a;
+  const float x[3] = {1.0f + sign * n[0] * n[0] * a, sign * b, -sign * n[0]};
+  const float y[3] = {b, sign + n[1] * n[1] * a, -n[1]};
+  const Floats one = hn::Set(f, 1.0f);
+  for (std::size_t k = 0; k < count; k += hn::Lanes(f)) {
+    const Floats u = unit(points.u.data() + first + k, pose.shift_u);
+    const Floats angle =
+        hn::Mul(hn::Sub(unit(points.v.data() + first + k, pose.shift_v), hn::Set(f, 0.5f)), hn::Set(f, 6.2831853f));
+    const Floats radius = hn::Sqrt(u);
+    const Floats px = hn::Mul(radius, hn::Cos(f, angle));
+    const Floats py = hn::Mul(radius, hn::Sin(f, angle));
+    const Floats pz = hn::Sqrt(hn::Sub(one, u));
+    Floats w[3];
+    for (int c = 0; c < 3; ++c) {
+      w[c] = hn::MulAdd(px, hn::Set(f, x[c]), hn::MulAdd(py, hn::Set(f, y[c]), hn::Mul(pz, hn::Set(f, n[c]))));
+      hn::StoreU(w[c], f, world.axis[c].data() + at + k);
+    }
+    for (int r = 0; r < 3; ++r) {
+      const float* m = to_index.m[r];
+      const Floats d =
+          hn::MulAdd(w[0], hn::Set(f, m[0]), hn::MulAdd(w[1], hn::Set(f, m[1]), hn::Mul(w[2], hn::Set(f, m[2]))));
+      hn::StoreU(d, f, rays.direction[r].data() + at + k);
+      hn::StoreU(hn::Set(f, pose.position[r]), f, rays.origin[r].data() + at + k);
+    }
+    hn::StoreU(hn::Set(f, pose.isovalue), f, rays.isovalue.data() + at + k);
+  }
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace isolux::wide
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace isolux::wide {
+
+HWY_EXPORT(aim);
+
+SobolPoints::SobolPoints(std::size_t count) : u(count + kPadding), v(count + kPadding) {
+  for (std::size_t i = 0; i < u.size(); ++i) {
+    // Direction numbers: the identity (van der Corput), and Pascal's matrix modulo 2, whose columns each follow from
+    // the one before by x ^ (x >> 1).
+    std::uint32_t column_u = 1u << 31;
+    std::uint32_t column_v = 1u << 31;
+    for (std::size_t bits = i; bits != 0; bits >>= 1) {
+      if ((bits & 1) != 0) {
+        u[i] ^= column_u;
+        v[i] ^= column_v;
+      }
+      column_u >>= 1;
+      column_v ^= column_v >> 1;
+    }
+  }
+}
+
+ToIndex::ToIndex(const IndexToWorld& frame) : m{}, world_step(0.0f) {
+  const Vec3 spacing = frame.spacing();
+  const double step = std::min({spacing.x, spacing.y, spacing.z});
+  const Mat3 inverse = glm::inverse(frame.axes);
+  for (int row = 0; row < 3; ++row)
+    for (int column = 0; column < 3; ++column) m[row][column] = float(inverse[column][row] * step);
+  world_step = float(step);
+}
+
+void aim_hemisphere(const Pose& pose, const SobolPoints& points, std::size_t first, std::size_t count,
+                    const ToIndex& to_index, std::size_t at, Rays& rays, Directions& world) {
+  HWY_DYNAMIC_DISPATCH(aim)(pose, points, first, count, to_index, at, rays, world);
+}
+
+}  // namespace isolux::wide
+#endif

@@ -1,0 +1,159 @@
+// Vectors, the queue of rays between the stages, and how a stage takes lanes from it. Included once per instruction
+// set.
+#if defined(ISOLUX_WIDE_LANES_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef ISOLUX_WIDE_LANES_INL_H_
+#undef ISOLUX_WIDE_LANES_INL_H_
+#else
+#define ISOLUX_WIDE_LANES_INL_H_
+#endif
+
+#include <hwy/highway.h>
+
+#include "wide/pack_order.h"
+#include "wide/rays.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace isolux::wide {
+namespace HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+using FloatTag = hn::ScalableTag<float>;
+using IntTag = hn::RebindToSigned<FloatTag>;
+using Floats = hn::Vec<FloatTag>;
+using Ints = hn::Vec<IntTag>;
+using Mask = hn::Mask<FloatTag>;
+
+inline constexpr FloatTag kF{};
+inline constexpr IntTag kI{};
+
+HWY_INLINE Floats lerp(Floats a, Floats b, Floats t) { return hn::MulAdd(t, hn::Sub(b, a), a); }
+HWY_INLINE Mask float_mask(hn::Mask<IntTag> m) { return hn::RebindMask(kF, m); }
+HWY_INLINE Ints floor_to_int(Floats x) { return hn::ConvertTo(kI, hn::Floor(x)); }
+
+/// A vector of rays in mirrored coordinates: on axes where a ray runs backwards, position p becomes -p and cell i
+/// becomes ~i, both exactly, so that every ray moves towards higher coordinates.
+struct Lanes {
+  Floats origin[3];
+  Floats direction[3];  ///< magnitudes, none zero
+  Floats inverse[3];    ///< of direction
+  Ints cell[3];
+  Ints mirror[3];  ///< all bits set where the ray runs backwards
+  Floats t;        ///< where the ray enters the cell
+  Floats isovalue;
+  Ints id;  ///< number of the ray in the batch
+};
+
+/// Rays on their way between two stages; structure of arrays.
+struct RayQueue {
+  static constexpr std::size_t kCapacity = 1024;
+  static constexpr std::size_t kFields = 12;
+
+  alignas(64) float field[kFields][kCapacity + 2 * kPadding];
+  std::size_t count = 0;
+
+  [[nodiscard]] bool room_for(std::size_t rays) const { return count + rays <= kCapacity; }
+};
+
+HWY_INLINE Ints load_ints(const float* from) { return hn::BitCast(kI, hn::LoadU(kF, from)); }
+
+HWY_INLINE Lanes load_lanes(const RayQueue& queue, std::size_t at) {
+  Lanes r;
+  for (int a = 0; a < 3; ++a) {
+    r.origin[a] = hn::LoadU(kF, queue.field[a] + at);
+    const Floats signed_direction = hn::LoadU(kF, queue.field[3 + a] + at);
+    r.direction[a] = hn::Abs(signed_direction);
+    r.inverse[a] = hn::Div(hn::Set(kF, 1.0f), r.direction[a]);
+    r.mirror[a] = hn::BroadcastSignBit(hn::BitCast(kI, signed_direction));
+    r.cell[a] = load_ints(queue.field[6 + a] + at);
+  }
+  r.t = hn::LoadU(kF, queue.field[9] + at);
+  r.isovalue = hn::LoadU(kF, queue.field[10] + at);
+  r.id = load_ints(queue.field[11] + at);
+  return r;
+}
+
+/// Packs the lanes of a mask to the front of vectors. (Highway's CompressStore looks the permutation up again for each
+/// vector, and release 1.0 with GCC 12 copies its table to the stack each time: a quarter of this speed.)
+class Packing {
+ public:
+  explicit HWY_INLINE Packing(Mask mask) : count_(hn::CountTrue(kF, mask)), mask_(mask) {
+#if HWY_TARGET != HWY_AVX3
+    static_assert(hn::MaxLanes(kI) <= 8);
+    std::uint8_t bits[8];
+    hn::StoreMaskBits(kF, mask, bits);
+    const hn::Rebind<std::uint8_t, IntTag> bytes;
+    order_ = hn::IndicesFromVec(kF, hn::PromoteTo(kI, hn::LoadU(bytes, kPackOrder[bits[0]].data())));
+#endif
+  }
+  [[nodiscard]] HWY_INLINE std::size_t count() const { return count_; }
+  /// Writes a whole vector, the packed lanes first.
+  HWY_INLINE void store(Floats v, float* to) const {
+#if HWY_TARGET == HWY_AVX3
+    hn::StoreU(hn::Compress(v, mask_), kF, to);
+#else
+    hn::StoreU(hn::TableLookupLanes(v, order_), kF, to);
+#endif
+  }
+
+ private:
+  std::size_t count_;
+  Mask mask_;
+#if HWY_TARGET != HWY_AVX3
+  decltype(hn::IndicesFromVec(kF, hn::Zero(kI))) order_;
+#endif
+};
+
+/// Appends the lanes of `mask`, packed. Whole vectors are stored: what lies behind the end of the queue is overwritten.
+HWY_INLINE void append_lanes(RayQueue& queue, const Lanes& r, Mask mask) {
+  const Packing packing(mask);
+  const std::size_t at = queue.count;
+  for (int a = 0; a < 3; ++a) {
+    const Floats sign = hn::BitCast(kF, hn::ShiftLeft<31>(r.mirror[a]));
+    packing.store(r.origin[a], queue.field[a] + at);
+    packing.store(hn::Or(r.direction[a], sign), queue.field[3 + a] + at);
+    packing.store(hn::BitCast(kF, r.cell[a]), queue.field[6 + a] + at);
+  }
+  packing.store(r.t, queue.field[9] + at);
+  packing.store(r.isovalue, queue.field[10] + at);
+  packing.store(hn::BitCast(kF, r.id), queue.field[11] + at);
+  queue.count += packing.count();
+}
+
+/// Where rays stand that leave through the planes `plane`: the parameter, and the cell behind.
+struct Exit {
+  Floats t;
+  Ints cell[3];
+};
+
+/// Moves rays out of the boxes that end at the mirrored integer planes `plane`. The axis left through gets its plane's
+/// integer and the others stay inside the box, whatever rounding says; t never decreases: no ray hangs or leaks.
+HWY_INLINE Exit leave(const Lanes& r, const Ints (&plane)[3]) {
+  Floats t_plane[3];
+  for (int a = 0; a < 3; ++a) t_plane[a] = hn::Mul(hn::Sub(hn::ConvertTo(kF, plane[a]), r.origin[a]), r.inverse[a]);
+  Exit exit;
+  exit.t = hn::Max(r.t, hn::Min(t_plane[0], hn::Min(t_plane[1], t_plane[2])));
+  const Ints one = hn::Set(kI, 1);
+  for (int a = 0; a < 3; ++a) {
+    const Ints reached = floor_to_int(hn::MulAdd(exit.t, r.direction[a], r.origin[a]));
+    const Ints inside = hn::Min(hn::Max(reached, r.cell[a]), hn::Sub(plane[a], one));
+    const auto through = hn::RebindMask(kI, hn::Le(t_plane[a], exit.t));
+    exit.cell[a] = hn::IfThenElse(through, plane[a], inside);
+  }
+  return exit;
+}
+
+/// Lanes whose (mirrored) cell lies in the volume.
+HWY_INLINE Mask in_box(const Ints (&cell)[3], const Ints (&mirror)[3], const Ints (&last_cell)[3]) {
+  Ints outside = hn::Zero(kI);
+  for (int a = 0; a < 3; ++a) {
+    const Ints x = hn::Xor(cell[a], mirror[a]);
+    outside = hn::Or(outside, hn::Or(x, hn::Sub(last_cell[a], x)));
+  }
+  return float_mask(hn::Gt(outside, hn::Set(kI, -1)));
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace isolux::wide
+HWY_AFTER_NAMESPACE();
+
+#endif

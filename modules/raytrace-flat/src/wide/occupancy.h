@@ -1,0 +1,59 @@
+#pragma once
+
+#include <isolux/core/run.h>
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "wide/rays.h"
+
+namespace isolux::wide {
+
+/// Cells along an axis of a brick.
+inline constexpr int kBrick = 4;
+
+/// For every cell, how many of a rising list of thresholds its largest value reaches (smallest, for the outer side of
+/// higher values; thresholds are then negated isovalues). One byte a cell, brick by brick, 64 bytes each: the occupancy
+/// for any threshold is then a compare of bytes. Rays run on the outer side, so no other extreme of a cell matters.
+class CellCodes {
+ public:
+  static constexpr std::size_t kMaxThresholds = 255;
+
+  /// \pre at most kMaxThresholds. Cost: one pass over the volume.
+  CellCodes(const FieldView& field, std::span<const float> thresholds, const Run& run);
+
+  [[nodiscard]] Index3 bricks() const { return bricks_; }
+  [[nodiscard]] std::span<const std::uint8_t> codes() const { return codes_; }
+
+ private:
+  Index3 bricks_{0};
+  std::vector<std::uint8_t> codes_;
+};
+
+/// Which cells a ray of some isovalues must look into, and how far it may leap: one bit a cell and one chessboard
+/// distance a brick (after Sramek & Kaufman, "Fast ray-tracing of rectilinear volume data using distance transforms",
+/// IEEE TVCG 2000).
+class Occupancy {
+ public:
+  explicit Occupancy(const CellCodes& codes);
+
+  /// For isovalues of the threshold `index` and above. Cost: one compare a cell byte; the distances are bit operations.
+  void build(const CellCodes& codes, int index, const Run& run);
+  /// \pre built
+  [[nodiscard]] OccupancyView view() const { return {words_.data(), distance_.data(), bricks_}; }
+
+ private:
+  void build_distances();
+
+  Index3 bricks_{0};
+  std::vector<std::uint32_t> words_;    ///< two a brick
+  std::vector<std::uint8_t> distance_;  ///< one a brick, padded so that four may be read at the last
+  std::vector<std::uint64_t> near_;     ///< a bit a brick, rows of whole words: within the distance reached so far
+  std::vector<std::uint64_t> widened_;  ///< the next distance
+};
+
+/// Bit i of out[i / 32] is set where codes[i] > index; `codes` in whole bricks.
+void pack_bits(std::span<const std::uint8_t> codes, std::uint8_t index, std::uint32_t* out);
+
+}  // namespace isolux::wide

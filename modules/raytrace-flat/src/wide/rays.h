@@ -1,0 +1,63 @@
+#pragma once
+
+#include <isolux/core/field.h>
+#include <isolux/core/vec.h>
+#include <isolux/raytrace_flat/flat_tracer.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+namespace isolux::wide {
+
+/// Lanes that any instruction set may read or write beyond the end of a ray array.
+inline constexpr std::size_t kPadding = 64;
+
+/// The parameter of a ray that meets nothing.
+inline constexpr float kEscaped = std::numeric_limits<float>::infinity();
+
+/// A batch of rays, each starting on its own level set; structure of arrays, index space. Arrays have `kPadding` values
+/// to spare.
+struct Rays {
+  std::size_t count = 0;
+  std::vector<float> origin[3];
+  std::vector<float> direction[3];  ///< any length
+  std::vector<float> isovalue;
+  std::vector<float> t;  ///< answer, in lengths of the direction: 0 if blocked at the start, kEscaped if nothing is met
+
+  explicit Rays(std::size_t capacity) {
+    for (auto& axis : origin) axis.resize(capacity + kPadding);
+    for (auto& axis : direction) axis.resize(capacity + kPadding);
+    isovalue.resize(capacity + kPadding);
+    t.resize(capacity + kPadding);
+  }
+  [[nodiscard]] std::size_t capacity() const { return t.size() - kPadding; }
+};
+
+/// What is asked of a ray.
+enum class Question : std::uint8_t {
+  kAnyHit,   ///< does it meet its level set? t is 0 if so
+  kFirstHit  ///< where first?
+};
+
+/// The field as the kernels see it: x fastest.
+struct FieldView {
+  const float* values = nullptr;
+  Index3 size{0};
+  OuterSide outer = OuterSide::kLower;
+};
+
+/// Where the level sets of a range of isovalues may be: see occupancy.h.
+struct OccupancyView {
+  const std::uint32_t* words = nullptr;    ///< two a brick, bit x + 4 y + 16 z within the half of z < 2 and z >= 2
+  const std::uint8_t* distance = nullptr;  ///< chessboard distance over bricks to one with a bit set
+  Index3 bricks{0};
+};
+
+/// Answers every ray of the batch. The occupancy must have every cell's bit set that a level set of one of the rays
+/// passes. Each answer depends on its own ray alone. Cost: some 20 leaps and 4 cell tests a ray.
+void trace(const FieldView& field, const OccupancyView& occupancy, Question question, Rays& rays,
+           TraceCounters& counters);
+
+}  // namespace isolux::wide

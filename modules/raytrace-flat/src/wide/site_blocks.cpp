@@ -1,0 +1,145 @@
+#include "wide/site_blocks.h"
+
+#include <isolux/core/error.h>
+#include <isolux/core/parallel.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "wide/occupancy.h"
+
+namespace isolux::wide {
+namespace {
+
+/// Buckets whose sites are gathered and sorted at once: few, to save memory; several, to save passes over the sites.
+constexpr std::size_t kBucketsAGroup = 16;
+constexpr std::size_t kSitesAPass = 65536;
+
+/// Bits of a cell index spread to every third place (for the Morton order).
+std::uint64_t spread_bits(std::uint64_t x) {
+  x &= 0x1FFFFF;
+  x = (x | x << 32) & 0x001F00000000FFFF;
+  x = (x | x << 16) & 0x001F0000FF0000FF;
+  x = (x | x << 8) & 0x100F00F00F00F00F;
+  x = (x | x << 4) & 0x10C30C30C30C30C3;
+  return (x | x << 2) & 0x1249249249249249;
+}
+
+std::uint64_t morton(const Vec3f& position) {
+  return spread_bits(std::uint64_t(position.x)) | spread_bits(std::uint64_t(position.y)) << 1 |
+         spread_bits(std::uint64_t(position.z)) << 2;
+}
+
+/// Isovalues with the sign that makes the inner side the higher one.
+float signed_isovalue(float isovalue, OuterSide outer) { return outer == OuterSide::kLower ? isovalue : -isovalue; }
+
+/// How many buckets pay: building a bucket's occupancy may cost some 3 % of tracing its rays.
+std::size_t bucket_count(const Volume& volume, std::size_t sites, const BlockRequest& request) {
+  const double bricks = double(volume.lattice().count()) / 64.0;
+  const double pays = 0.3 * double(sites) * double(request.rays_per_site) / bricks;
+  return std::size_t(std::clamp(pays, 1.0, double(CellCodes::kMaxThresholds)));
+}
+
+/// Rising thresholds that share the sites out evenly; the first is below all of them.
+std::vector<float> choose_thresholds(const Sites& sites, OuterSide outer, std::size_t buckets) {
+  constexpr std::size_t kSample = 65536;
+  const std::size_t step = std::max<std::size_t>(1, sites.size() / kSample);
+  std::vector<float> sample;
+  float least = std::numeric_limits<float>::infinity();
+  for (std::size_t i = 0; i < sites.size(); ++i) {
+    const float value = signed_isovalue(sites.isovalues[i], outer);
+    least = std::min(least, value);
+    if (i % step == 0) sample.push_back(value);
+  }
+  std::sort(sample.begin(), sample.end());
+  std::vector<float> thresholds{least};
+  for (std::size_t b = 1; b < buckets; ++b) {
+    const float value = sample[b * sample.size() / buckets];
+    if (value > thresholds.back()) thresholds.push_back(value);
+  }
+  return thresholds;
+}
+
+struct Entry {
+  std::uint64_t key;  ///< bucket, then Morton order
+  std::uint32_t site;
+  bool operator<(const Entry& other) const { return key != other.key ? key < other.key : site < other.site; }
+};
+
+/// The sites of buckets [first, last), by bucket and Morton order.
+std::vector<Entry> collect(const Sites& sites, OuterSide outer, const std::vector<float>& thresholds, std::size_t first,
+                           std::size_t last, const Run& run) {
+  std::vector<std::vector<Entry>> parts(block_count(sites.size(), kSitesAPass));
+  const float low = thresholds[first];
+  const float high = last < thresholds.size() ? thresholds[last] : std::numeric_limits<float>::infinity();
+  parallel_blocks(sites.size(), kSitesAPass, run, "", [&](const Block& block) {
+    auto& part = parts[block.index];
+    for (std::size_t i = block.begin; i < block.end; ++i) {
+      const float value = signed_isovalue(sites.isovalues[i], outer);
+      if (!(value >= low && value < high)) continue;
+      const auto bucket = std::upper_bound(thresholds.begin(), thresholds.end(), value) - thresholds.begin() - 1;
+      part.push_back({std::uint64_t(bucket) << 56 | morton(sites.positions[i]) >> 7, std::uint32_t(i)});
+    }
+    std::sort(part.begin(), part.end());
+  });
+  std::vector<Entry> all;
+  for (auto& part : parts) {
+    all.insert(all.end(), part.begin(), part.end());
+    part = {};
+  }
+  std::sort(all.begin(), all.end());
+  return all;
+}
+
+/// A run whose progress is that of a part of a longer one.
+Run part_of(const Run& run, std::size_t done, std::size_t part, std::size_t all) {
+  Run inner = run;
+  if (run.progress) {
+    inner.progress = [&run, done, part, all](std::string_view stage, double fraction) {
+      run.progress(stage, (double(done) + fraction * double(part)) / double(all));
+    };
+  }
+  return inner;
+}
+
+}  // namespace
+
+void for_each_block(const Volume& volume, const Sites& sites, const BlockRequest& request, const Run& run,
+                    std::string_view stage, const std::function<void(const SiteBlock&)>& body) {
+  const Lattice& lattice = volume.lattice();
+  if (lattice.count() > std::size_t(std::numeric_limits<std::int32_t>::max()) ||
+      sites.size() > std::size_t(std::numeric_limits<std::uint32_t>::max()))
+    throw InvalidInput(volume.name + ": the wide tracer takes volumes of at most 2^31 - 1 voxels");
+  if (sites.size() == 0) return;
+  const FieldView field{volume.values.values().data(), lattice.size, request.outer};
+  std::vector<float> thresholds = choose_thresholds(sites, request.outer, bucket_count(volume, sites.size(), request));
+  const std::vector<float> buckets = thresholds;
+  // Positions found by tracing are off their level set by a rounding; a little room below keeps them in the bucket.
+  const ValueRange range = value_range(volume);
+  for (float& threshold : thresholds) threshold -= 1e-4f * (range.high - range.low);
+  const CellCodes codes(field, thresholds, run);
+  Occupancy occupancy(codes);
+  std::size_t done = 0;
+  for (std::size_t first = 0; first < buckets.size(); first += kBucketsAGroup) {
+    const std::size_t last = std::min(buckets.size(), first + kBucketsAGroup);
+    const std::vector<Entry> entries = collect(sites, request.outer, buckets, first, last, run);
+    for (std::size_t begin = 0; begin < entries.size();) {
+      const std::uint64_t bucket = entries[begin].key >> 56;
+      std::size_t end = begin;
+      while (end < entries.size() && entries[end].key >> 56 == bucket) ++end;
+      occupancy.build(codes, int(bucket), run);
+      const Run part = part_of(run, done, end - begin, sites.size());
+      parallel_blocks(end - begin, request.sites_per_block, part, stage, [&](const Block& block) {
+        std::vector<std::uint32_t> numbers;
+        for (std::size_t i = block.begin; i < block.end; ++i) numbers.push_back(entries[begin + i].site);
+        body({numbers, field, occupancy.view(), signed_isovalue(thresholds[bucket], request.outer)});
+      });
+      done += end - begin;
+      begin = end;
+    }
+  }
+}
+
+}  // namespace isolux::wide

@@ -1,0 +1,43 @@
+#pragma once
+
+#include <isolux/core/run.h>
+#include <isolux/core/sample_set.h>
+#include <isolux/core/volume.h>
+
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <string_view>
+
+#include "wide/rays.h"
+
+namespace isolux::wide {
+
+/// Sites of similar isovalue that lie close together, and what rays of their isovalues need.
+struct SiteBlock {
+  std::span<const std::uint32_t> sites;  ///< numbers into the Sites
+  FieldView field;
+  OccupancyView occupancy;
+  float threshold = 0.0f;  ///< the occupancy holds for isovalues from here on towards the inner side
+
+  /// The isovalue nearest to `wanted` for which the occupancy holds: positions found by tracing are rounded, and so is
+  /// their isovalue, which may drift past the threshold by as much.
+  [[nodiscard]] float admitted(float wanted) const {
+    return field.outer == OuterSide::kLower ? std::max(wanted, threshold) : std::min(wanted, threshold);
+  }
+};
+
+struct BlockRequest {
+  OuterSide outer = OuterSide::kLower;
+  std::size_t rays_per_site = 64;     ///< expected; decides how finely isovalues are told apart
+  std::size_t sites_per_block = 128;  ///< at most
+};
+
+/// Calls body for blocks that hold every site once, on run.threads threads. Sites are taken bucket by bucket of
+/// isovalues (equal shares of the sites, up to 255 of them), within a bucket in Morton order, so that neighbours in
+/// time are neighbours in memory. Neither the blocks nor their order in memory depend on the number of threads. Memory:
+/// a byte a cell, 9 bits a brick of 4^3 cells, and some bytes for each site of the buckets at work. \throw Cancelled
+void for_each_block(const Volume& volume, const Sites& sites, const BlockRequest& request, const Run& run,
+                    std::string_view stage, const std::function<void(const SiteBlock&)>& body);
+
+}  // namespace isolux::wide

@@ -1,0 +1,259 @@
+// The stages of the stream: start -> travel -> test -> solve. Included once per instruction set.
+#if defined(ISOLUX_WIDE_STAGES_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef ISOLUX_WIDE_STAGES_INL_H_
+#undef ISOLUX_WIDE_STAGES_INL_H_
+#else
+#define ISOLUX_WIDE_STAGES_INL_H_
+#endif
+
+#include <hwy/cache_control.h>
+
+#include <bit>
+
+#include "wide/cell-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace isolux::wide {
+namespace HWY_NAMESPACE {
+
+/// Components below this are taken for this: their planes are then beyond every box, and 1/d stays finite.
+inline constexpr float kSmallestDirection = 1e-12f;
+
+/// Takes the batch's rays [at, at + lanes) into mirrored coordinates. A ray that starts exactly on a face between cells
+/// stands in the cell that it runs into, so that no first interval is empty.
+HWY_INLINE Lanes start_lanes(const Rays& rays, std::size_t at, const Ints (&last_cell)[3]) {
+  Lanes r;
+  const Floats smallest = hn::Set(kF, kSmallestDirection);
+  for (int a = 0; a < 3; ++a) {
+    const Floats d = hn::LoadU(kF, rays.direction[a].data() + at);
+    const Floats o = hn::LoadU(kF, rays.origin[a].data() + at);
+    const Mask backwards = hn::Lt(d, hn::Zero(kF));
+    r.mirror[a] = hn::BitCast(kI, hn::VecFromMask(kF, backwards));
+    r.direction[a] = hn::Max(hn::Abs(d), smallest);
+    r.inverse[a] = hn::Div(hn::Set(kF, 1.0f), r.direction[a]);
+    r.origin[a] = hn::IfThenElse(backwards, hn::Neg(o), o);
+    r.cell[a] = floor_to_int(r.origin[a]);
+    // A ray that runs along the last face belongs to the cells below it.
+    const auto along_face = hn::RebindMask(kI, hn::Eq(d, hn::Zero(kF)));
+    r.cell[a] = hn::IfThenElse(along_face, hn::Min(r.cell[a], last_cell[a]), r.cell[a]);
+  }
+  r.t = hn::Zero(kF);
+  r.isovalue = hn::LoadU(kF, rays.isovalue.data() + at);
+  r.id = hn::Iota(kI, int(at));
+  return r;
+}
+
+/// First stage: solves each ray's own cell and queues the rays that leave it. \pre the queue has room for the vectors
+template <Question question>
+void start(const CellReader& cells, Rays& rays, std::size_t begin, std::size_t end, RayQueue& travelling) {
+  const Floats zero = hn::Zero(kF);
+  const Ints one = hn::Set(kI, 1);
+  for (std::size_t at = begin; at < end; at += hn::Lanes(kF)) {
+    Lanes r = start_lanes(rays, at, cells.last_cell);
+    const Mask present = hn::FirstN(kF, end - at);
+    const Mask inside = hn::And(present, in_box(r.cell, r.mirror, cells.last_cell));
+    Ints cell[3];
+    Floats place[3];
+    Floats direction[3];
+    for (int a = 0; a < 3; ++a) {
+      cell[a] = hn::IfThenElseZero(hn::RebindMask(kI, inside), hn::Xor(r.cell[a], r.mirror[a]));
+      const Floats mirror = hn::BitCast(kF, hn::ShiftLeft<31>(r.mirror[a]));
+      place[a] = hn::Sub(hn::Xor(r.origin[a], mirror), hn::ConvertTo(kF, cell[a]));
+      direction[a] = hn::Xor(r.direction[a], mirror);
+    }
+    const Corners corners = cells.corners(cells.offset(cell), r.isovalue);
+    const Deflated polynomial = deflated(corners, place, direction);
+    const Ints planes[3] = {hn::Add(r.cell[0], one), hn::Add(r.cell[1], one), hn::Add(r.cell[2], one)};
+    const Exit exit = leave(r, planes);
+    Floats root;
+    const Mask blocked = hn::And(inside, hn::Ge(polynomial.c[0], zero));
+    const Mask hit = hn::AndNot(blocked, hn::And(inside, next_root(polynomial, exit.t, root)));
+    Floats t = hn::IfThenElse(hit, root, hn::Set(kF, kEscaped));
+    if (question == Question::kAnyHit) t = hn::IfThenElse(hit, zero, t);
+    hn::StoreU(hn::IfThenElse(blocked, zero, t), kF, rays.t.data() + at);
+    for (int a = 0; a < 3; ++a) r.cell[a] = exit.cell[a];
+    r.t = exit.t;
+    const Mask leaves = hn::AndNot(hn::Or(blocked, hit), inside);
+    append_lanes(travelling, r, hn::And(leaves, in_box(r.cell, r.mirror, cells.last_cell)));
+  }
+}
+
+/// Finds how far a ray may leap from where it stands.
+struct Guide {
+  const std::uint32_t* words;
+  const std::int32_t* distance;
+  Ints bricks_x;
+  Ints bricks_xy;
+  Ints last_cell[3];
+
+  Guide(const OccupancyView& occupancy, const CellReader& cells)
+      : words(occupancy.words),
+        distance(reinterpret_cast<const std::int32_t*>(occupancy.distance)),
+        bricks_x(hn::Set(kI, occupancy.bricks.x)),
+        bricks_xy(hn::Set(kI, occupancy.bricks.x * occupancy.bricks.y)) {
+    for (int a = 0; a < 3; ++a) last_cell[a] = cells.last_cell[a];
+  }
+
+  /// Moves the lanes of `moving` to the end of the empty box around them: bricks within the distance, else the eighth
+  /// of a brick, else the cell. Returns the lanes that stand in an occupied cell instead; those that left the volume
+  /// are taken from `moving` too.
+  [[nodiscard]] HWY_INLINE Mask step(Lanes& r, Mask& moving) const {
+    const auto moving_int = hn::RebindMask(kI, moving);
+    Ints x[3];
+    for (int a = 0; a < 3; ++a) x[a] = hn::IfThenElseZero(moving_int, hn::Xor(r.cell[a], r.mirror[a]));
+    const Ints brick =
+        hn::Add(hn::Add(hn::Mul(hn::ShiftRight<2>(x[2]), bricks_xy), hn::Mul(hn::ShiftRight<2>(x[1]), bricks_x)),
+                hn::ShiftRight<2>(x[0]));
+    const Ints distance_here = hn::And(hn::GatherOffset(kI, distance, brick), hn::Set(kI, 255));
+    const Ints two = hn::Set(kI, 2);
+    const Ints three = hn::Set(kI, 3);
+    const Ints half = hn::Add(hn::Add(brick, brick), hn::ShiftRight<1>(hn::And(x[2], two)));
+    const Ints word = hn::GatherIndex(kI, reinterpret_cast<const std::int32_t*>(words), half);
+    const Ints bit = hn::Or(hn::ShiftLeft<4>(hn::And(x[2], hn::Set(kI, 1))),
+                            hn::Or(hn::ShiftLeft<2>(hn::And(x[1], three)), hn::And(x[0], three)));
+    const hn::RebindToUnsigned<IntTag> u;
+    const auto bits = hn::BitCast(u, word);
+    const auto occupied = hn::TestBit(hn::BitCast(kI, hn::Shr(bits, hn::BitCast(u, bit))), hn::Set(kI, 1));
+    // The eighth: 2 x 2 x 2 cells whose bits are 0, 1, 4, 5, 16, 17, 20, 21 above its first.
+    const auto eighth = hn::Shr(bits, hn::BitCast(u, hn::And(bit, hn::Set(kI, 0xA))));
+    const auto empty_eighth = hn::Eq(hn::And(hn::BitCast(kI, eighth), hn::Set(kI, 0x00330033)), hn::Zero(kI));
+    const auto in_empty_brick = hn::Gt(distance_here, hn::Zero(kI));
+    const Ints one = hn::Set(kI, 1);
+    const Ints low_bits = hn::IfThenElse(in_empty_brick, three, hn::IfThenElseZero(empty_eighth, one));
+    const Ints reach =
+        hn::IfThenElse(in_empty_brick, hn::ShiftLeft<2>(distance_here), hn::IfThenElse(empty_eighth, two, one));
+    Ints plane[3];
+    for (int a = 0; a < 3; ++a) plane[a] = hn::Add(hn::AndNot(low_bits, r.cell[a]), reach);
+    const Exit exit = leave(r, plane);
+    const Mask stopped = hn::And(moving, float_mask(occupied));
+    moving = hn::AndNot(stopped, moving);
+    const auto go = hn::RebindMask(kI, moving);
+    for (int a = 0; a < 3; ++a) r.cell[a] = hn::IfThenElse(go, exit.cell[a], r.cell[a]);
+    r.t = hn::IfThenElse(moving, exit.t, r.t);
+    moving = hn::And(moving, in_box(r.cell, r.mirror, last_cell));
+    return stopped;
+  }
+};
+
+/// Second stage, one pass over the queue: a few steps for each vector of rays, without branches; rays that reach an
+/// occupied cell go to `waiting`, those that leave the volume are done, the rest is packed again.
+void travel(const Guide& guide, RayQueue& travelling, RayQueue& waiting, TraceCounters& counters) {
+  constexpr int kSteps = 2;
+  const std::size_t count = travelling.count;
+  travelling.count = 0;
+  for (std::size_t at = 0; at < count; at += hn::Lanes(kF)) {
+    Lanes r = load_lanes(travelling, at);
+    Mask moving = hn::FirstN(kF, count - at);
+    Mask stopped = hn::FirstN(kF, 0);
+    for (int step = 0; step < kSteps; ++step) {
+      counters.macrocells += hn::CountTrue(kF, moving);
+      stopped = hn::Or(stopped, guide.step(r, moving));
+    }
+    append_lanes(waiting, r, stopped);
+    append_lanes(travelling, r, moving);
+  }
+}
+
+/// Cubics with a root, waiting for the last stage.
+struct RootQueue {
+  alignas(64) float b[4][RayQueue::kCapacity + 2 * kPadding];
+  alignas(64) float high[RayQueue::kCapacity + 2 * kPadding];
+  alignas(64) float t_enter[RayQueue::kCapacity + 2 * kPadding];
+  alignas(64) float t_leave[RayQueue::kCapacity + 2 * kPadding];
+  alignas(64) float id[RayQueue::kCapacity + 2 * kPadding];
+  std::size_t count = 0;
+
+  [[nodiscard]] std::size_t ray(std::size_t at) const { return std::size_t(std::bit_cast<std::int32_t>(id[at])); }
+};
+
+HWY_INLINE void append_roots(RootQueue& roots, const Cubic& cubic, Floats high, const Lanes& r, Floats t_leave,
+                             Mask mask) {
+  const Packing packing(mask);
+  const std::size_t at = roots.count;
+  for (int i = 0; i < 4; ++i) packing.store(cubic.b[i], roots.b[i] + at);
+  packing.store(high, roots.high + at);
+  packing.store(r.t, roots.t_enter + at);
+  packing.store(t_leave, roots.t_leave + at);
+  packing.store(hn::BitCast(kF, r.id), roots.id + at);
+  roots.count += packing.count();
+}
+
+/// Asks for the corner values of the vector of cells at `at` ahead of their use.
+HWY_INLINE void prefetch_cells(const CellReader& cells, const RayQueue& waiting, std::size_t at) {
+  Ints x[3];
+  for (int a = 0; a < 3; ++a) {
+    const Ints mirror = hn::BroadcastSignBit(load_ints(waiting.field[3 + a] + at));
+    x[a] = hn::Xor(load_ints(waiting.field[6 + a] + at), mirror);
+  }
+  alignas(64) std::int32_t offset[hn::MaxLanes(kI)];
+  hn::Store(cells.offset(x), kI, offset);
+  for (std::size_t lane = 0; lane < hn::Lanes(kI); ++lane)
+    for (const float* row : cells.row) hwy::Prefetch(row + offset[lane]);
+}
+
+/// Third stage: tests the cells of the waiting rays; hits go to `roots` (or are answered at once if any hit will do),
+/// the rest travels on from the next cell.
+template <Question question>
+void test(const CellReader& cells, RayQueue& waiting, RayQueue& travelling, RootQueue& roots, Rays& rays) {
+  const Floats zero = hn::Zero(kF);
+  const Floats unit = hn::Set(kF, 1.0f);
+  const Ints one = hn::Set(kI, 1);
+  const std::size_t lanes = hn::Lanes(kF);
+  for (std::size_t at = 0; at < waiting.count; at += lanes) {
+    if (at + 3 * lanes <= waiting.count) prefetch_cells(cells, waiting, at + 2 * lanes);
+    Lanes r = load_lanes(waiting, at);
+    const Mask present = hn::FirstN(kF, waiting.count - at);
+    const Ints planes[3] = {hn::Add(r.cell[0], one), hn::Add(r.cell[1], one), hn::Add(r.cell[2], one)};
+    const Exit exit = leave(r, planes);
+    Ints cell[3];
+    Floats from[3];
+    Floats to[3];
+    for (int a = 0; a < 3; ++a) {
+      cell[a] = hn::IfThenElseZero(hn::RebindMask(kI, present), hn::Xor(r.cell[a], r.mirror[a]));
+      const Floats base = hn::Sub(r.origin[a], hn::ConvertTo(kF, r.cell[a]));
+      const Floats enter = hn::Min(unit, hn::Max(zero, hn::MulAdd(r.t, r.direction[a], base)));
+      const Floats out = hn::Min(unit, hn::Max(zero, hn::MulAdd(exit.t, r.direction[a], base)));
+      const Mask backwards = hn::MaskFromVec(hn::BitCast(kF, r.mirror[a]));
+      from[a] = hn::IfThenElse(backwards, hn::Sub(unit, enter), enter);
+      to[a] = hn::IfThenElse(backwards, hn::Sub(unit, out), out);
+    }
+    const Corners corners = cells.corners(cells.offset(cell), r.isovalue);
+    const Cubic cubic = along(corners, from, to);
+    // Reached already at the entry: the root lies on the face, on the last cell's side by rounding.
+    const Mask at_entry = hn::And(present, hn::Ge(cubic.b[0], zero));
+    Floats high;
+    const Mask reaches = hn::And(present, reaches_zero(cubic, high));
+    const Mask hit = hn::Or(at_entry, reaches);
+    append_roots(roots, cubic, hn::IfThenElse(at_entry, zero, high), r, exit.t, hit);
+    for (int a = 0; a < 3; ++a) r.cell[a] = exit.cell[a];
+    r.t = exit.t;
+    const Mask on = hn::AndNot(hit, present);
+    append_lanes(travelling, r, hn::And(on, in_box(r.cell, r.mirror, cells.last_cell)));
+    if (question == Question::kAnyHit) {
+      for (std::size_t i = 0; i < roots.count; ++i) rays.t[roots.ray(i)] = 0.0f;
+      roots.count = 0;
+    }
+  }
+  waiting.count = 0;
+}
+
+/// Last stage: solves the queued cubics.
+void solve(RootQueue& roots, Rays& rays) {
+  alignas(64) float t[hn::MaxLanes(kF)];
+  for (std::size_t at = 0; at < roots.count; at += hn::Lanes(kF)) {
+    Cubic cubic;
+    for (int i = 0; i < 4; ++i) cubic.b[i] = hn::LoadU(kF, roots.b[i] + at);
+    const Floats high = hn::LoadU(kF, roots.high + at);
+    const Floats s = hn::IfThenZeroElse(hn::Le(high, hn::Zero(kF)), bracketed_root(cubic, high));
+    hn::Store(lerp(hn::LoadU(kF, roots.t_enter + at), hn::LoadU(kF, roots.t_leave + at), s), kF, t);
+    const std::size_t n = HWY_MIN(hn::Lanes(kF), roots.count - at);
+    for (std::size_t i = 0; i < n; ++i) rays.t[roots.ray(at + i)] = t[i];
+  }
+  roots.count = 0;
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace isolux::wide
+HWY_AFTER_NAMESPACE();
+
+#endif

@@ -1,0 +1,62 @@
+// Compiled once per instruction set; the fastest that the machine has is chosen when first called.
+#define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV)
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "wide/trace.cpp"
+#include <hwy/foreach_target.h>
+// After foreach_target.h, in this order.
+#include <hwy/highway.h>
+
+#include "wide/stages-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace isolux::wide {
+namespace HWY_NAMESPACE {
+
+/// Keeps the queue of travelling rays filled and lets the stages take turns until every ray has its answer.
+template <Question question>
+void run_stages(const FieldView& field, const OccupancyView& occupancy, Rays& rays, TraceCounters& counters) {
+  static thread_local RayQueue travelling;
+  static thread_local RayQueue waiting;
+  static thread_local RootQueue roots;
+  const CellReader cells(field);
+  const Guide guide(occupancy, cells);
+  travelling.count = waiting.count = roots.count = 0;
+  for (std::size_t next = 0; next < rays.count || travelling.count > 0;) {
+    const std::size_t room = (RayQueue::kCapacity - travelling.count) / hn::Lanes(kF) * hn::Lanes(kF);
+    const std::size_t end = HWY_MIN(rays.count, next + room);
+    start<question>(cells, rays, next, end, travelling);
+    next = end;
+    travel(guide, travelling, waiting, counters);
+    counters.cells += waiting.count;
+    test<question>(cells, waiting, travelling, roots, rays);
+    counters.cubics += roots.count;
+    solve(roots, rays);
+  }
+  counters.rays += rays.count;
+}
+
+void trace_rays(const FieldView& field, const OccupancyView& occupancy, Question question, Rays& rays,
+                TraceCounters& counters) {
+  if (question == Question::kAnyHit) {
+    run_stages<Question::kAnyHit>(field, occupancy, rays, counters);
+  } else {
+    run_stages<Question::kFirstHit>(field, occupancy, rays, counters);
+  }
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace isolux::wide
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace isolux::wide {
+
+HWY_EXPORT(trace_rays);
+
+void trace(const FieldView& field, const OccupancyView& occupancy, Question question, Rays& rays,
+           TraceCounters& counters) {
+  HWY_DYNAMIC_DISPATCH(trace_rays)(field, occupancy, question, rays, counters);
+}
+
+}  // namespace isolux::wide
+#endif
