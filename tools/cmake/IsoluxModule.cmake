@@ -7,7 +7,8 @@
 #                 [BACKEND_PACKAGES key:Package...] # a backend that is left out, with a word, where its package is missing
 #                 [TEST_PACKAGES packages...] [BENCH_PACKAGES packages...])
 #
-# Sources are src/*.cpp and those of its folders; each file of src/backends is one backend: its key is its file name, and the generated catalogue calls
+# Sources are src/*.cpp and those of its folders; each file of src/backends is one backend: its key is its file name, and the
+# generated catalogue calls
 # its isolux::backends::KEY(Registry<Stage>&). tests/*.cpp become one GoogleTest program, each benches/*.cpp and examples/*.cpp
 # a program of its own.
 include_guard(GLOBAL)

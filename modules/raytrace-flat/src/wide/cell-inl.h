@@ -178,14 +178,39 @@ HWY_INLINE Deflated deflated(const Corners& k, const Floats (&at)[3], const Floa
            hn::Mul(hxyz, hn::Mul(dxy, d[2]))}};
 }
 
-/// Lanes whose deflated polynomial, negative at 0, has a root in (0, t_end]; `root` gets the first.
+/// Lanes whose deflated polynomial is positive just beyond 0: the ray goes straight into the inner side.
+HWY_INLINE Mask goes_inwards(const Deflated& p) {
+  const Floats zero = hn::Zero(kF);
+  const Mask curves = hn::Or(hn::Gt(p.c[1], zero), hn::And(hn::Eq(p.c[1], zero), hn::Gt(p.c[2], zero)));
+  return hn::Or(hn::Gt(p.c[0], zero), hn::And(hn::Eq(p.c[0], zero), curves));
+}
+
+/// Lanes whose deflated polynomial is zero: the ray stays on its level set as far as the cell goes.
+HWY_INLINE Mask is_flat(const Deflated& p) {
+  const Floats zero = hn::Zero(kF);
+  return hn::And(hn::Eq(p.c[0], zero), hn::And(hn::Eq(p.c[1], zero), hn::Eq(p.c[2], zero)));
+}
+
+/// Lanes whose deflated polynomial, not positive just beyond 0, has a root in (0, t_end]; `root` gets the first.
 HWY_INLINE Mask next_root(const Deflated& p, Floats t_end, Floats& root) {
   const Floats zero = hn::Zero(kF);
   const Floats discriminant = hn::NegMulAdd(hn::Mul(hn::Set(kF, 4.0f), p.c[0]), p.c[2], hn::Mul(p.c[1], p.c[1]));
   const Floats denominator = hn::Add(p.c[1], hn::Sqrt(hn::Max(discriminant, zero)));
   root = hn::Div(hn::Mul(hn::Set(kF, -2.0f), p.c[0]), denominator);
-  const Mask real = hn::And(hn::Ge(discriminant, zero), hn::Gt(denominator, zero));
+  Mask real = hn::And(hn::Ge(discriminant, zero), hn::Gt(denominator, zero));
+  const Mask tangent = hn::Eq(p.c[0], zero);
+  if (!hn::AllFalse(kF, tangent)) {
+    root = hn::IfThenElse(tangent, hn::Div(hn::Neg(p.c[1]), p.c[2]), root);
+    real = hn::Or(hn::AndNot(tangent, real), hn::And(tangent, hn::And(hn::Lt(p.c[1], zero), hn::Gt(p.c[2], zero))));
+  }
   return hn::And(real, hn::Le(root, t_end));
+}
+
+/// The same polynomial for a start at the cubic's beginning, over its own parameter.
+HWY_INLINE Deflated deflated(const Cubic& c) {
+  const Floats first = hn::Mul(hn::Set(kF, 3.0f), hn::Sub(c.b[1], c.b[0]));
+  const Floats twice_middle = hn::Mul(hn::Set(kF, 3.0f), c.b[2]);
+  return {{first, hn::Sub(twice_middle, hn::Add(first, first)), hn::Add(hn::Sub(first, twice_middle), c.b[3])}};
 }
 
 }  // namespace HWY_NAMESPACE

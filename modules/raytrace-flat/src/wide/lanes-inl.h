@@ -40,8 +40,16 @@ struct Lanes {
   Ints mirror[3];  ///< all bits set where the ray runs backwards
   Floats t;        ///< where the ray enters the cell
   Floats isovalue;
-  Ints id;  ///< number of the ray in the batch
+  Ints id;  ///< number of the ray in the batch; sign bit: it has not left its level set yet
 };
+
+/// Lanes that still lie on the level set they started on, having crossed nothing but flat cells.
+HWY_INLINE Mask still_on_it(const Lanes& r) { return float_mask(hn::Lt(r.id, hn::Zero(kI))); }
+HWY_INLINE Ints number_of(Ints id) { return hn::And(id, hn::Set(kI, 0x7FFFFFFF)); }
+HWY_INLINE void mark(Lanes& r, Mask on_level_set) {
+  const Ints marked = hn::Or(r.id, hn::Set(kI, -0x7FFFFFFF - 1));
+  r.id = hn::IfThenElse(hn::RebindMask(kI, on_level_set), marked, number_of(r.id));
+}
 
 /// Rays on their way between two stages; structure of arrays.
 struct RayQueue {
@@ -123,6 +131,7 @@ HWY_INLINE void append_lanes(RayQueue& queue, const Lanes& r, Mask mask) {
 struct Exit {
   Floats t;
   Ints cell[3];
+  Mask through[3];  ///< lanes that leave through this axis' plane
 };
 
 /// Moves rays out of the boxes that end at the mirrored integer planes `plane`. The axis left through gets its plane's
@@ -136,8 +145,8 @@ HWY_INLINE Exit leave(const Lanes& r, const Ints (&plane)[3]) {
   for (int a = 0; a < 3; ++a) {
     const Ints reached = floor_to_int(hn::MulAdd(exit.t, r.direction[a], r.origin[a]));
     const Ints inside = hn::Min(hn::Max(reached, r.cell[a]), hn::Sub(plane[a], one));
-    const auto through = hn::RebindMask(kI, hn::Le(t_plane[a], exit.t));
-    exit.cell[a] = hn::IfThenElse(through, plane[a], inside);
+    exit.through[a] = hn::Le(t_plane[a], exit.t);
+    exit.cell[a] = hn::IfThenElse(hn::RebindMask(kI, exit.through[a]), plane[a], inside);
   }
   return exit;
 }

@@ -16,14 +16,20 @@ namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
 void pack(std::span<const std::uint8_t> codes, std::uint8_t index, std::uint32_t* out) {
-  const hn::CappedTag<std::uint8_t, 32> d;
-  const std::size_t lanes = hn::Lanes(d);
-  const auto limit = hn::Set(d, index);
   for (std::size_t i = 0; i < codes.size(); i += 32) {
+#if HWY_TARGET == HWY_SCALAR
+    std::uint32_t bits = 0;
+    for (std::size_t c = 0; c < 32; ++c) bits |= std::uint32_t(codes[i + c] > index) << c;
+    *out++ = bits;
+#else
+    const hn::CappedTag<std::uint8_t, 32> d;
+    const std::size_t lanes = hn::Lanes(d);
+    const auto limit = hn::Set(d, index);
     std::uint8_t bits[8] = {};  // StoreMaskBits may write eight bytes
     for (std::size_t part = 0; part < 32; part += lanes)
       hn::StoreMaskBits(d, hn::Gt(hn::LoadU(d, codes.data() + i + part), limit), bits + part / 8);
     std::memcpy(out++, bits, 4);
+#endif
   }
 }
 

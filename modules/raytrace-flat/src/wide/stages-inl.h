@@ -65,16 +65,20 @@ void start(const CellReader& cells, Rays& rays, std::size_t begin, std::size_t e
     const Deflated polynomial = deflated(corners, place, direction);
     const Ints planes[3] = {hn::Add(r.cell[0], one), hn::Add(r.cell[1], one), hn::Add(r.cell[2], one)};
     const Exit exit = leave(r, planes);
+    const Mask goes_on = in_box(exit.cell, r.mirror, cells.last_cell);
+    // A level set may lie in the box's own face, where no next cell makes up for a rounding of the root.
+    const Floats end_of_box = hn::Mul(exit.t, hn::Set(kF, 1.0f + 0x1p-20f));
     Floats root;
-    const Mask blocked = hn::And(inside, hn::Ge(polynomial.c[0], zero));
-    const Mask hit = hn::AndNot(blocked, hn::And(inside, next_root(polynomial, exit.t, root)));
+    const Mask blocked = hn::And(inside, goes_inwards(polynomial));
+    const Mask again = next_root(polynomial, hn::IfThenElse(goes_on, exit.t, end_of_box), root);
+    const Mask hit = hn::AndNot(blocked, hn::And(inside, again));
     Floats t = hn::IfThenElse(hit, root, hn::Set(kF, kEscaped));
     if (question == Question::kAnyHit) t = hn::IfThenElse(hit, zero, t);
     hn::StoreU(hn::IfThenElse(blocked, zero, t), kF, rays.t.data() + at);
     for (int a = 0; a < 3; ++a) r.cell[a] = exit.cell[a];
     r.t = exit.t;
-    const Mask leaves = hn::AndNot(hn::Or(blocked, hit), inside);
-    append_lanes(travelling, r, hn::And(leaves, in_box(r.cell, r.mirror, cells.last_cell)));
+    mark(r, is_flat(polynomial));
+    append_lanes(travelling, r, hn::And(hn::AndNot(hn::Or(blocked, hit), inside), goes_on));
   }
 }
 
@@ -148,6 +152,8 @@ void travel(const Guide& guide, RayQueue& travelling, RayQueue& waiting, TraceCo
     for (int step = 0; step < kSteps; ++step) {
       counters.macrocells += hn::CountTrue(kF, moving);
       stopped = hn::Or(stopped, guide.step(r, moving));
+      // Whoever has leapt over an empty cell has left its level set.
+      if (step == 0) mark(r, hn::And(stopped, still_on_it(r)));
     }
     append_lanes(waiting, r, stopped);
     append_lanes(travelling, r, moving);
@@ -166,15 +172,15 @@ struct RootQueue {
   [[nodiscard]] std::size_t ray(std::size_t at) const { return std::size_t(std::bit_cast<std::int32_t>(id[at])); }
 };
 
-HWY_INLINE void append_roots(RootQueue& roots, const Cubic& cubic, Floats high, const Lanes& r, Floats t_leave,
+HWY_INLINE void append_roots(RootQueue& roots, const Cubic& cubic, Floats high, Ints id, Floats t_enter, Floats t_leave,
                              Mask mask) {
   const Packing packing(mask);
   const std::size_t at = roots.count;
   for (int i = 0; i < 4; ++i) packing.store(cubic.b[i], roots.b[i] + at);
   packing.store(high, roots.high + at);
-  packing.store(r.t, roots.t_enter + at);
+  packing.store(t_enter, roots.t_enter + at);
   packing.store(t_leave, roots.t_leave + at);
-  packing.store(hn::BitCast(kF, r.id), roots.id + at);
+  packing.store(hn::BitCast(kF, number_of(id)), roots.id + at);
   roots.count += packing.count();
 }
 
@@ -191,12 +197,47 @@ HWY_INLINE void prefetch_cells(const CellReader& cells, const RayQueue& waiting,
     for (const float* row : cells.row) hwy::Prefetch(row + offset[lane]);
 }
 
+/// Where rays enter and leave their cell, in the cell's own coordinates, not mirrored. On the faces that they pass the
+/// places are exact: a level set may lie in a face.
+HWY_INLINE void places_in_cell(const Lanes& r, const Exit& exit, Floats (&from)[3], Floats (&to)[3]) {
+  const Floats zero = hn::Zero(kF);
+  const Floats unit = hn::Set(kF, 1.0f);
+  for (int a = 0; a < 3; ++a) {
+    const Floats base = hn::Sub(r.origin[a], hn::ConvertTo(kF, r.cell[a]));
+    // The very product that made t when the ray came through this face.
+    const Mask through_face = hn::Le(r.t, hn::Mul(hn::Neg(base), r.inverse[a]));
+    const Floats inside = hn::Min(unit, hn::Max(zero, hn::MulAdd(r.t, r.direction[a], base)));
+    const Floats enter = hn::IfThenZeroElse(through_face, inside);
+    const Floats out = hn::Min(unit, hn::Max(zero, hn::MulAdd(exit.t, r.direction[a], base)));
+    const Floats leave_at = hn::IfThenElse(exit.through[a], unit, out);
+    const Mask backwards = hn::MaskFromVec(hn::BitCast(kF, r.mirror[a]));
+    from[a] = hn::IfThenElse(backwards, hn::Sub(unit, enter), enter);
+    to[a] = hn::IfThenElse(backwards, hn::Sub(unit, leave_at), leave_at);
+  }
+}
+
+/// The answers for rays that enter a cell still on their level set, whose root at the entry is none: in place of what
+/// the cubic says of `fresh` lanes. Rare (plateaus), so it has its own branch.
+HWY_INLINE void restart(Mask fresh, const Cubic& cubic, Floats t_leave, Lanes& r, Mask& hit, Floats& high,
+                        Floats& t_enter) {
+  const Deflated polynomial = deflated(cubic);
+  const Floats zero = hn::Zero(kF);
+  Floats root;
+  const Mask blocked = goes_inwards(polynomial);
+  const Mask again = hn::AndNot(blocked, next_root(polynomial, hn::Set(kF, 1.0f), root));
+  const Mask answered = hn::And(fresh, hn::Or(blocked, again));
+  hit = hn::Or(hn::AndNot(fresh, hit), answered);
+  // A bracket of no length: the root is its own entry.
+  high = hn::IfThenElse(fresh, zero, high);
+  t_enter = hn::IfThenElse(hn::And(fresh, again), lerp(r.t, t_leave, root), t_enter);
+  mark(r, hn::And(fresh, is_flat(polynomial)));
+}
+
 /// Third stage: tests the cells of the waiting rays; hits go to `roots` (or are answered at once if any hit will do),
 /// the rest travels on from the next cell.
 template <Question question>
 void test(const CellReader& cells, RayQueue& waiting, RayQueue& travelling, RootQueue& roots, Rays& rays) {
   const Floats zero = hn::Zero(kF);
-  const Floats unit = hn::Set(kF, 1.0f);
   const Ints one = hn::Set(kI, 1);
   const std::size_t lanes = hn::Lanes(kF);
   for (std::size_t at = 0; at < waiting.count; at += lanes) {
@@ -206,25 +247,23 @@ void test(const CellReader& cells, RayQueue& waiting, RayQueue& travelling, Root
     const Ints planes[3] = {hn::Add(r.cell[0], one), hn::Add(r.cell[1], one), hn::Add(r.cell[2], one)};
     const Exit exit = leave(r, planes);
     Ints cell[3];
+    for (int a = 0; a < 3; ++a)
+      cell[a] = hn::IfThenElseZero(hn::RebindMask(kI, present), hn::Xor(r.cell[a], r.mirror[a]));
     Floats from[3];
     Floats to[3];
-    for (int a = 0; a < 3; ++a) {
-      cell[a] = hn::IfThenElseZero(hn::RebindMask(kI, present), hn::Xor(r.cell[a], r.mirror[a]));
-      const Floats base = hn::Sub(r.origin[a], hn::ConvertTo(kF, r.cell[a]));
-      const Floats enter = hn::Min(unit, hn::Max(zero, hn::MulAdd(r.t, r.direction[a], base)));
-      const Floats out = hn::Min(unit, hn::Max(zero, hn::MulAdd(exit.t, r.direction[a], base)));
-      const Mask backwards = hn::MaskFromVec(hn::BitCast(kF, r.mirror[a]));
-      from[a] = hn::IfThenElse(backwards, hn::Sub(unit, enter), enter);
-      to[a] = hn::IfThenElse(backwards, hn::Sub(unit, out), out);
-    }
+    places_in_cell(r, exit, from, to);
     const Corners corners = cells.corners(cells.offset(cell), r.isovalue);
     const Cubic cubic = along(corners, from, to);
     // Reached already at the entry: the root lies on the face, on the last cell's side by rounding.
     const Mask at_entry = hn::And(present, hn::Ge(cubic.b[0], zero));
     Floats high;
     const Mask reaches = hn::And(present, reaches_zero(cubic, high));
-    const Mask hit = hn::Or(at_entry, reaches);
-    append_roots(roots, cubic, hn::IfThenElse(at_entry, zero, high), r, exit.t, hit);
+    Mask hit = hn::Or(at_entry, reaches);
+    high = hn::IfThenElse(at_entry, zero, high);
+    Floats t_enter = r.t;
+    const Mask fresh = hn::And(present, still_on_it(r));
+    if (!hn::AllFalse(kF, fresh)) restart(fresh, cubic, exit.t, r, hit, high, t_enter);
+    append_roots(roots, cubic, high, r.id, t_enter, exit.t, hit);
     for (int a = 0; a < 3; ++a) r.cell[a] = exit.cell[a];
     r.t = exit.t;
     const Mask on = hn::AndNot(hit, present);

@@ -1,0 +1,49 @@
+#include <fmt/format.h>
+#include <isolux/core/error.h>
+#include <isolux/raytrace_flat/gather.h>
+
+#include <mutex>
+
+#include "trace_counters.h"
+#include "wide/aimer.h"
+#include "wide/rays.h"
+#include "wide/site_blocks.h"
+
+namespace isolux {
+
+static_assert(GatheredRays::kEscaped == wide::kEscaped);
+
+TraceCounters gather(const Volume& volume, const Sites& sites, const GatherSettings& settings, const Run& run,
+                     const RaySink& sink) {
+  if (settings.rays < 1) throw InvalidInput(fmt::format("rays = {}: allowed is 1 and more", settings.rays));
+  const wide::Aimer aimer(volume.lattice().frame, run.seed, std::size_t(settings.rays));
+  const wide::BlockRequest request{
+      .outer = settings.outer, .rays_per_site = aimer.rays(), .sites_per_block = aimer.sites_per_batch()};
+  const auto question = settings.question == RayQuestion::kAnyHit ? wide::Question::kAnyHit : wide::Question::kFirstHit;
+  TraceCounters total;
+  std::mutex adding;
+  wide::for_each_block(volume, sites, request, run, "trace", [&](const wide::SiteBlock& block) {
+    static thread_local wide::Batch batch;
+    batch.clear(block.sites.size() * aimer.rays());
+    for (const std::uint32_t site : block.sites) aimer.append(sites, site, batch.rays, batch.world);
+    TraceCounters counters;
+    wide::trace(block.field, block.occupancy, question, batch.rays, counters);
+    GatheredRays gathered;
+    gathered.sites = block.sites;
+    gathered.rays = aimer.rays();
+    gathered.world_scale = aimer.to_index().world_step;
+    const std::size_t count = batch.rays.count;
+    for (int a = 0; a < 3; ++a) {
+      gathered.direction[a] = {batch.world.axis[a].data(), count};
+      gathered.index_direction[a] = {batch.rays.direction[a].data(), count};
+    }
+    gathered.index_distance = {batch.rays.t.data(), count};
+    for (std::size_t i = 0; i < count; ++i) counters.hits += std::uint64_t(!gathered.escaped(i));
+    sink(gathered);
+    const std::scoped_lock lock(adding);
+    add(total, counters);
+  });
+  return total;
+}
+
+}  // namespace isolux

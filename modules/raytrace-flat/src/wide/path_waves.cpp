@@ -1,0 +1,261 @@
+#include "wide/path_waves.h"
+
+#include <algorithm>
+#include <glm/geometric.hpp>
+#include <limits>
+#include <numbers>
+#include <numeric>
+
+#include "directions.h"
+
+namespace isolux::wide {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+/// Indices of the points along a curve of Morton's: neighbours in it share the small squares of the net, and still do
+/// after a digital shift.
+std::vector<std::uint32_t> neighbour_order(const SobolPoints& points, std::size_t count) {
+  const auto place = [&](std::uint32_t i) {
+    std::uint64_t key = 0;
+    for (int bit = 31; bit >= 0; --bit)
+      key = key << 2 | std::uint64_t(points.u[i] >> bit & 1) << 1 | (points.v[i] >> bit & 1);
+    return key;
+  };
+  std::vector<std::uint32_t> order(count);
+  std::iota(order.begin(), order.end(), 0u);
+  std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) { return place(a) < place(b); });
+  return order;
+}
+
+/// Writes a ray of a batch.
+void put_ray(Rays& rays, const Vec3f& origin, float isovalue, const Vec3& towards, const ToIndex& to_index) {
+  const std::size_t at = rays.count++;
+  for (int a = 0; a < 3; ++a) {
+    const float* m = to_index.m[a];
+    rays.origin[a][at] = origin[a];
+    rays.direction[a][at] = float(double(m[0]) * towards.x + double(m[1]) * towards.y + double(m[2]) * towards.z);
+  }
+  rays.isovalue[at] = isovalue;
+}
+
+}  // namespace
+
+/// What a block's paths have come to.
+struct PathWaves::Wave {
+  int depth = 0;
+  std::span<const std::uint32_t> sites;
+  std::vector<Material> materials;  ///< of each site
+  std::vector<Vec3> value;          ///< of each ray of the first wave
+  std::vector<Path> paths;          ///< one a ray of `batch`
+  Batch batch;
+};
+
+/// A question of a path: does the light from there arrive?
+struct PathWaves::Sighting {
+  std::uint32_t path;
+  Vec3 towards;     ///< world space, unit
+  double distance;  ///< world units
+  Vec3 light;       ///< added to the path's value if nothing is in the way
+};
+
+PathWaves::PathWaves(const Volume& volume, const Scene& scene, const TraceSettings& settings, const PathLimits& limits,
+                     std::uint64_t seed)
+    : scene_(scene),
+      settings_(settings),
+      limits_(limits),
+      seed_(seed),
+      field_(volume),
+      environment_(scene.environment),
+      lights_(scene.lights.begin(), scene.lights.end()),
+      aimer_(volume.lattice().frame, seed, std::size_t(settings.rays)),
+      neighbours_(neighbour_order(aimer_.points(), std::size_t(settings.rays))) {}
+
+UnitPair PathWaves::numbers(const Wave& wave, const Path& path, std::uint32_t dimension) const {
+  const auto rays = std::uint32_t(aimer_.rays());
+  // Of each vertex: its next direction, its roulette, its lights, its environment.
+  const auto pairs_a_vertex = std::uint32_t(lights_.size()) + 3;
+  return PathSampler(seed_, wave.sites[path.ray / rays])
+      .pair(path.ray % rays, std::uint32_t(wave.depth) * pairs_a_vertex + dimension);
+}
+
+void PathWaves::light(const SiteBlock& block, SampleSet& samples, TraceCounters& counters) const {
+  static thread_local Wave wave;
+  start(block, samples.sites, wave);
+  for (wave.depth = 0; !wave.paths.empty(); ++wave.depth) {
+    if (!lights_.empty() || environment_.has_samples()) direct_light(block, wave, counters);
+    if (wave.depth > 0) aim(wave);
+    const bool none_goes_on = wave.depth == settings_.bounces || wave.depth == limits_.longest_path;
+    trace(block.field, block.occupancy, none_goes_on ? Question::kAnyHit : Question::kFirstHit, wave.batch.rays,
+          counters);
+    for (std::size_t i = 0; i < wave.batch.rays.count; ++i)
+      counters.hits += std::uint64_t(wave.batch.rays.t[i] != kEscaped);
+    arrive(block, wave);
+  }
+  fold(block, wave, samples);
+}
+
+void PathWaves::start(const SiteBlock& block, const Sites& sites, Wave& wave) const {
+  const std::size_t rays = aimer_.rays();
+  wave.sites = block.sites;
+  wave.materials.clear();
+  wave.paths.clear();
+  wave.value.assign(block.sites.size() * rays, Vec3(0.0));
+  wave.batch.clear(wave.value.size());
+  for (const std::uint32_t site : block.sites) {
+    const float isovalue = sites.isovalues[site];
+    const Vec3 albedo(scene_.albedo.at(isovalue));
+    wave.materials.push_back({albedo, Vec3(scene_.emission.at(isovalue)), albedo == Vec3(0.0)});
+    const auto first = std::uint32_t(wave.batch.rays.count);
+    aimer_.append(sites, site, wave.batch.rays, wave.batch.world);
+    const Path path{.ray = first,
+                    .throughput = Vec3(1.0),
+                    .position = sites.positions[site],
+                    .isovalue = isovalue,
+                    .normal = Vec3(sites.normals[site])};
+    for (std::uint32_t k = 0; k < rays; ++k) wave.paths.push_back(path), wave.paths.back().ray = first + k;
+  }
+}
+
+void PathWaves::aim(Wave& wave) const {
+  wave.batch.rays.count = 0;
+  for (const Path& path : wave.paths) {
+    const UnitPair pair = numbers(wave, path, 0);
+    const Vec3 towards = frame_about(path.normal).world(cosine_direction(pair.u, pair.v));
+    for (int a = 0; a < 3; ++a) wave.batch.world.axis[a][wave.batch.rays.count] = float(towards[a]);
+    put_ray(wave.batch.rays, path.position, path.isovalue, towards, aimer_.to_index());
+  }
+}
+
+Vec3 PathWaves::escaped_light(const Vec3& normal, const Vec3& towards) const {
+  const Vec3 radiance = environment_.radiance(towards);
+  if (!environment_.has_samples()) return radiance;
+  const double density = std::max(0.0, glm::dot(normal, towards)) * std::numbers::inv_pi;
+  const double both = density + environment_.density(towards);
+  return both > 0.0 ? radiance * (density / both) : Vec3(0.0);
+}
+
+bool PathWaves::go_on(const SiteBlock& block, const Wave& wave, std::size_t ray, Path& path) const {
+  const Material& material = wave.materials[path.ray / aimer_.rays()];
+  if (wave.depth == settings_.bounces || wave.depth == limits_.longest_path || material.is_black) return false;
+  path.throughput *= material.albedo;
+  if (wave.depth >= limits_.roulette_depth) {
+    const Vec3& t = path.throughput;
+    const double survival = std::min(1.0, std::max({t.x, t.y, t.z}));
+    if (numbers(wave, path, 1).u >= survival) return false;
+    path.throughput /= survival;
+  }
+  const Rays& rays = wave.batch.rays;
+  Vec3 position;
+  for (int a = 0; a < 3; ++a) {
+    const double x = double(rays.origin[a][ray]) + double(rays.t[ray]) * double(rays.direction[a][ray]);
+    position[a] = std::clamp(x, 0.0, double(block.field.size[a] - 1));
+  }
+  path.position = Vec3f(position);
+  position = Vec3(path.position);
+  path.isovalue = block.admitted(float(field_.value(position)));
+  path.normal = field_.normal(position, scene_.outer, settings_.gradient);
+  // Central differences can cancel where the cell itself still slopes.
+  if (path.normal == Vec3(0.0)) path.normal = field_.normal(position, scene_.outer, GradientKind::kCell);
+  return path.normal != Vec3(0.0);
+}
+
+void PathWaves::arrive(const SiteBlock& block, Wave& wave) const {
+  const Rays& rays = wave.batch.rays;
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < rays.count; ++i) {
+    Path path = wave.paths[i];
+    Vec3& value = wave.value[path.ray];
+    if (rays.t[i] == kEscaped) {
+      const auto& world = wave.batch.world.axis;
+      value += path.throughput * escaped_light(path.normal, {world[0][i], world[1][i], world[2][i]});
+      continue;
+    }
+    value += path.throughput * wave.materials[path.ray / aimer_.rays()].emission;
+    if (go_on(block, wave, i, path)) wave.paths[kept++] = path;
+  }
+  wave.paths.resize(kept);
+}
+
+void PathWaves::direct_light(const SiteBlock& block, Wave& wave, TraceCounters& counters) const {
+  const IndexToWorld& frame = field_.lattice().frame;
+  std::vector<Sighting> sightings;
+  const auto consider = [&](std::size_t i, const Vec3& towards, double distance, const Vec3& light_a_cosine) {
+    const Path& path = wave.paths[i];
+    const double cosine = glm::dot(path.normal, towards);
+    if (cosine > 0.0)
+      sightings.push_back({std::uint32_t(i), towards, distance, path.throughput * light_a_cosine * cosine});
+  };
+  for (std::size_t light = 0; light < lights_.size(); ++light) {
+    for (std::size_t i = 0; i < wave.paths.size(); ++i) {
+      const Path& path = wave.paths[i];
+      const UnitPair pair = numbers(wave, path, 2 + std::uint32_t(light));
+      const auto sample = lights_[light].sample(frame.world(Vec3(path.position)), pair.u, pair.v);
+      if (sample) consider(i, sample->towards, sample->distance, sample->weight * std::numbers::inv_pi);
+    }
+    look(block, wave, sightings, counters);
+  }
+  if (!environment_.has_samples()) return;
+  for (std::size_t i = 0; i < wave.paths.size(); ++i) {
+    const Path& path = wave.paths[i];
+    const UnitPair pair = numbers(wave, path, 2 + std::uint32_t(lights_.size()));
+    const auto sample = environment_.sample(pair.u, pair.v);
+    // The balance heuristic with the path's own cosine-distributed direction.
+    const double both = glm::dot(path.normal, sample.towards) * std::numbers::inv_pi + sample.density;
+    consider(i, sample.towards, kInfinity,
+             environment_.radiance(sample.towards) * (std::numbers::inv_pi / std::max(both, 1e-300)));
+  }
+  look(block, wave, sightings, counters);
+}
+
+void PathWaves::look(const SiteBlock& block, Wave& wave, std::vector<Sighting>& sightings,
+                     TraceCounters& counters) const {
+  static thread_local Rays rays(0);
+  if (rays.capacity() < sightings.size()) rays = Rays(sightings.size());
+  rays.count = 0;
+  bool all_far = true;
+  for (const Sighting& s : sightings) {
+    const Path& path = wave.paths[s.path];
+    put_ray(rays, path.position, path.isovalue, s.towards, aimer_.to_index());
+    all_far = all_far && s.distance == kInfinity;
+  }
+  trace(block.field, block.occupancy, all_far ? Question::kAnyHit : Question::kFirstHit, rays, counters);
+  for (std::size_t i = 0; i < rays.count; ++i) {
+    const double met = double(rays.t[i]) * double(aimer_.to_index().world_step);
+    const bool blocked = rays.t[i] != kEscaped && met <= sightings[i].distance;
+    counters.hits += std::uint64_t(blocked);
+    if (!blocked) wave.value[wave.paths[sightings[i].path].ray] += sightings[i].light;
+  }
+  sightings.clear();
+}
+
+void PathWaves::fold(const SiteBlock& block, const Wave& wave, SampleSet& samples) const {
+  const std::size_t rays = aimer_.rays();
+  const auto channels = std::size_t(samples.channels);
+  for (std::size_t s = 0; s < block.sites.size(); ++s) {
+    const std::size_t site = block.sites[s];
+    const bool is_lit = samples.sites.normals[site] != Vec3f(0.0f);
+    Vec3 sum(0.0);
+    Vec3 differences(0.0);
+    const Vec3* values = wave.value.data() + s * rays;
+    for (std::size_t k = 0; k < rays && is_lit; ++k) {
+      const Vec3& here = values[neighbours_[k]];
+      sum += here;
+      if (k == 0) continue;
+      const Vec3 step = here - values[neighbours_[k - 1]];
+      differences += step * step;
+    }
+    double variance = 0.0;
+    for (std::size_t c = 0; c < channels; ++c) {
+      samples.radiance[site * channels + c] = float(sum[int(c)] / double(rays));
+      variance += differences[int(c)];
+    }
+    // Plain variance / n would count the differences between far strata, which the net has removed: what is left shows
+    // between neighbours (successive differences, von Neumann 1941).
+    const auto n = double(rays);
+    variance = is_lit && rays > 1 ? variance / (2.0 * (n - 1.0) * n * double(channels)) : kInfinity;
+    samples.variance[site] = float(std::min(variance, double(std::numeric_limits<float>::max())));
+  }
+}
+
+}  // namespace isolux::wide

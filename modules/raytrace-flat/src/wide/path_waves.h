@@ -1,0 +1,71 @@
+#pragma once
+
+#include <isolux/core/field.h>
+#include <isolux/raytrace_flat/flat_tracer.h>
+
+#include <cstdint>
+#include <vector>
+
+#include "environment.h"
+#include "light_sources.h"
+#include "path_sampler.h"
+#include "path_tracer.h"
+#include "wide/aimer.h"
+#include "wide/site_blocks.h"
+
+namespace isolux::wide {
+
+/// Path tracing wave by wave: all paths of a block of sites take their first step together, then all that are left
+/// their second, each wave one batch of the wide kernels. Estimates what PathTracer does, by the same rules. Immutable;
+/// volume and scene must outlive it.
+class PathWaves {
+ public:
+  PathWaves(const Volume& volume, const Scene& scene, const TraceSettings& settings, const PathLimits& limits,
+            std::uint64_t seed);
+
+  [[nodiscard]] const Aimer& aimer() const { return aimer_; }
+  /// Lights the sites of a block: radiance and variance of `samples`.
+  void light(const SiteBlock& block, SampleSet& samples, TraceCounters& counters) const;
+
+ private:
+  /// What all vertices of a site's paths share: they lie on one level set.
+  struct Material {
+    Vec3 albedo;
+    Vec3 emission;
+    bool is_black;  ///< reflects nothing
+  };
+  /// A path and where it stands.
+  struct Path {
+    std::uint32_t ray;  ///< of the first wave: which value it adds to
+    Vec3 throughput;
+    Vec3f position;  ///< index space
+    float isovalue;
+    Vec3 normal;  ///< world space
+  };
+  struct Wave;
+
+  void start(const SiteBlock& block, const Sites& sites, Wave& wave) const;
+  void aim(Wave& wave) const;
+  void arrive(const SiteBlock& block, Wave& wave) const;
+  /// Moves a path to the vertex that its ray has hit; false if it ends there.
+  [[nodiscard]] bool go_on(const SiteBlock& block, const Wave& wave, std::size_t ray, Path& path) const;
+  void direct_light(const SiteBlock& block, Wave& wave, TraceCounters& counters) const;
+  /// Traces one light sample a path (density 0: none) and adds what arrives.
+  struct Sighting;
+  void look(const SiteBlock& block, Wave& wave, std::vector<Sighting>& sightings, TraceCounters& counters) const;
+  [[nodiscard]] Vec3 escaped_light(const Vec3& normal, const Vec3& towards) const;
+  [[nodiscard]] UnitPair numbers(const Wave& wave, const Path& path, std::uint32_t dimension) const;
+  void fold(const SiteBlock& block, const Wave& wave, SampleSet& samples) const;
+
+  const Scene& scene_;
+  TraceSettings settings_;
+  PathLimits limits_;
+  std::uint64_t seed_;
+  TrilinearField field_;
+  PreparedEnvironment environment_;
+  std::vector<PreparedLight> lights_;
+  Aimer aimer_;
+  std::vector<std::uint32_t> neighbours_;  ///< the first rays of a site, in an order that keeps strata together
+};
+
+}  // namespace isolux::wide
