@@ -9,9 +9,9 @@
 #
 # Sources are src/*.cpp and those of its folders; each file of src/backends is one backend: its key is its file name, and the
 # generated catalogue calls
-# its isolux::backends::KEY(Registry<Stage>&). tests/*.cpp become one GoogleTest program, each benches/*.cpp and examples/*.cpp
-# a program of its own.
-include_guard(GLOBAL)
+# Sources are src/*.cpp and those of its folders; each file of src/backends is one backend: its key is its file name, and the
+# generated catalogue calls its isolux::backends::KEY(Registry<Stage>&). tests/*.cpp become one GoogleTest program, each
+# benches/*.cpp and examples/*.cpp a program of its own.
 include(${CMAKE_CURRENT_LIST_DIR}/IsoluxPackages.cmake)
 include(GNUInstallDirs)
 get_filename_component(ISOLUX_ROOT ${CMAKE_CURRENT_LIST_DIR}/../.. ABSOLUTE)
