@@ -7,11 +7,10 @@
 #                 [BACKEND_PACKAGES key:Package...] # a backend that is left out, with a word, where its package is missing
 #                 [TEST_PACKAGES packages...] [BENCH_PACKAGES packages...])
 #
-# Sources are src/*.cpp and those of its folders; each file of src/backends is one backend: its key is its file name, and the
-# generated catalogue calls
-# Sources are src/*.cpp and those of its folders; each file of src/backends is one backend: its key is its file name, and the
-# generated catalogue calls its isolux::backends::KEY(Registry<Stage>&). tests/*.cpp become one GoogleTest program, each
-# benches/*.cpp and examples/*.cpp a program of its own.
+# Sources are src/*.cpp; each file of src/backends is one backend: its key is its file name, and the generated catalogue calls
+# its isolux::backends::KEY(Registry<Stage>&). tests/*.cpp become one GoogleTest program, each benches/*.cpp and examples/*.cpp
+# a program of its own.
+include_guard(GLOBAL)
 include(${CMAKE_CURRENT_LIST_DIR}/IsoluxPackages.cmake)
 include(GNUInstallDirs)
 get_filename_component(ISOLUX_ROOT ${CMAKE_CURRENT_LIST_DIR}/../.. ABSOLUTE)
@@ -143,8 +142,7 @@ function(isolux_module name)
     isolux_need_module(${module})
   endforeach()
 
-  file(GLOB sources CONFIGURE_DEPENDS src/*.cpp src/*/*.cpp)
-  list(FILTER sources EXCLUDE REGEX "/src/backends/")  # the catalogue adds those
+  file(GLOB sources CONFIGURE_DEPENDS src/*.cpp)
   set(backend_packages "")
   if(M_STAGE)
     _isolux_catalogue(${name} ${id} ${M_STAGE} ${M_CATALOGUE} "${M_DEFAULT}" "${M_BACKEND_PACKAGES}"
