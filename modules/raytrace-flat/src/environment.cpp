@@ -44,14 +44,17 @@ std::size_t find_interval(const double* sums, std::size_t count, double wanted, 
 
 }  // namespace
 
-PreparedEnvironment::PreparedEnvironment(const Environment& environment) : environment_(&environment) {
+EnvironmentView::EnvironmentView(const Environment& environment) : environment_(&environment) {
+  if (const auto* sky = std::get_if<SkyEnvironment>(&environment)) frame_ = image_frame(sky->up);
+  if (const auto* image = std::get_if<ImageEnvironment>(&environment)) frame_ = image_frame(image->up);
+}
+
+PreparedEnvironment::PreparedEnvironment(const Environment& environment) : EnvironmentView(environment) {
   if (const auto* uniform = std::get_if<UniformEnvironment>(&environment)) {
     shines_ = !is_black(uniform->radiance);
   } else if (const auto* sky = std::get_if<SkyEnvironment>(&environment)) {
-    frame_ = image_frame(sky->up);
     shines_ = !(is_black(sky->zenith) && is_black(sky->horizon) && is_black(sky->ground));
   } else if (const auto* image = std::get_if<ImageEnvironment>(&environment)) {
-    frame_ = image_frame(image->up);
     shines_ = !std::all_of(image->pixels.begin(), image->pixels.end(), is_black);
     if (shines_) prepare_image();
   }
@@ -79,14 +82,14 @@ void PreparedEnvironment::prepare_image() {
   row_sums_.clear();
 }
 
-PreparedEnvironment::Place PreparedEnvironment::place(const Vec3& towards) const {
+EnvironmentView::Place EnvironmentView::place(const Vec3& towards) const {
   const double x = glm::dot(towards, frame_.x);
   const double y = glm::dot(towards, frame_.y);
   const double z = glm::dot(towards, frame_.z);
   return {.column = 0.5 - std::atan2(y, x) / (2.0 * kPi), .row = std::atan2(std::hypot(x, y), z) / kPi};
 }
 
-Vec3 PreparedEnvironment::image_radiance(const Place& place) const {
+Vec3 EnvironmentView::image_radiance(const Place& place) const {
   const auto& image = std::get<ImageEnvironment>(*environment_);
   const double x = place.column * image.width - 0.5;
   const double y = place.row * image.height - 0.5;
@@ -98,7 +101,7 @@ Vec3 PreparedEnvironment::image_radiance(const Place& place) const {
          fy * ((1.0 - fx) * Vec3(pixel(image, i, j + 1)) + fx * Vec3(pixel(image, i + 1, j + 1)));
 }
 
-Vec3 PreparedEnvironment::radiance(const Vec3& towards) const {
+Vec3 EnvironmentView::radiance(const Vec3& towards) const {
   if (const auto* uniform = std::get_if<UniformEnvironment>(environment_)) return Vec3(uniform->radiance);
   if (const auto* sky = std::get_if<SkyEnvironment>(environment_)) {
     const double sine = glm::dot(towards, frame_.z);

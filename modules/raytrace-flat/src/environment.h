@@ -8,13 +8,32 @@
 
 namespace isolux {
 
-/// An environment made ready for many questions. Owns nothing of the scene, which must outlive it.
-class PreparedEnvironment {
+/// What an environment shines from where. Owns nothing of the scene, which must outlive it.
+class EnvironmentView {
  public:
-  explicit PreparedEnvironment(const Environment& environment);
+  explicit EnvironmentView(const Environment& environment);
 
   /// Radiance from world direction `towards` (unit).
   [[nodiscard]] Vec3 radiance(const Vec3& towards) const;
+
+ protected:
+  /// Place in an image: columns 0..1 from the left edge, rows 0..1 from the top.
+  struct Place {
+    double column;
+    double row;
+  };
+  [[nodiscard]] Place place(const Vec3& towards) const;
+  [[nodiscard]] Vec3 image_radiance(const Place& place) const;
+
+  const Environment* environment_;
+  Frame frame_{};  ///< z: up; x: what an image's middle column shows; y: a quarter turn to the left of it
+};
+
+/// An environment made ready for drawing directions from it. Cost: one pass over an image's pixels.
+class PreparedEnvironment : public EnvironmentView {
+ public:
+  explicit PreparedEnvironment(const Environment& environment);
+
   /// False where all directions are black.
   [[nodiscard]] bool shines() const { return shines_; }
 
@@ -30,17 +49,8 @@ class PreparedEnvironment {
   [[nodiscard]] double density(const Vec3& towards) const;
 
  private:
-  /// Place in the image: columns 0..1 from the left edge, rows 0..1 from the top.
-  struct Place {
-    double column;
-    double row;
-  };
-  [[nodiscard]] Place place(const Vec3& towards) const;
-  [[nodiscard]] Vec3 image_radiance(const Place& place) const;
   void prepare_image();
 
-  const Environment* environment_;
-  Frame frame_{};  ///< z: up; x: what the image's middle column shows; y: a quarter turn to the left of it
   bool shines_ = false;
   // Of patches between pixel centres, where the bilinear interpolant of an image is one piece: (height + 1) rows of
   // `width`, running sums of luminance times solid angle. Empty unless the environment is an image that shines.

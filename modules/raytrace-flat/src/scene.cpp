@@ -129,7 +129,7 @@ bool is_grey(const Scene& scene) {
 }
 
 Vec3f environment_radiance(const Environment& environment, const Vec3& towards) {
-  return Vec3f(PreparedEnvironment(environment).radiance(towards));
+  return Vec3f(EnvironmentView(environment).radiance(towards));
 }
 
 void require_valid(const Scene& scene) {
