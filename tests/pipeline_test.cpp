@@ -105,7 +105,7 @@ TEST(LightPoints, TellTheTextureWhatItShouldSay) {
   double sum = 0.0;
   std::size_t count = 0;
   for (std::size_t i = 0; i < points.size(); ++i) {
-    // e = 1 - cos(a) (r/d)^2 where the other ball lies wholly above the horizon (PHYSICS: two balls).
+    // e = 1 - cos(a) (r/d)^2 where the other ball lies wholly above the horizon (docs/theory.md).
     const Vec3 p(points[i]);
     const Vec3 own = p.x < 0.5 ? Vec3(0.3, 0.5, 0.5) : Vec3(0.7, 0.5, 0.5);
     const Vec3 other = Vec3(1.0, 1.0, 1.0) - own;

@@ -15,9 +15,9 @@ namespace {
 
 constexpr Vec3f kLineColour(0.08f, 0.1f, 0.2f);
 
-template <class T>
-std::size_t bytes(const std::vector<T>& values) {
-  return values.size() * sizeof(T);
+template <class Values>
+std::size_t bytes(const Values& values) {
+  return values.size() * sizeof(values[0]);
 }
 
 }  // namespace
