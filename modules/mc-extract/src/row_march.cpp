@@ -79,8 +79,7 @@ MeshSize RowMarch::count(const ExtractSettings& settings, const Run& run, const 
 void RowMarch::classify_all(const Run& run) {
   parallel_blocks(std::size_t(march_.nz), kBlock, run, "", [&](const Block& block) {
     for (int k = int(block.begin); k < int(block.end); ++k)
-      for (int j = 0; j < march_.ny; ++j)
-        classify_row(march_, march_.row_values(j, k), march_.nx, march_.row_bits(j, k));
+      for (int j = 0; j < march_.ny; ++j) classify_row(march_, j, k);
   });
 }
 
@@ -107,8 +106,11 @@ std::uint8_t RowMarch::activity(int word, int row, int layer) const {
 
 void RowMarch::classify_brick_row(const ExtractSettings& settings, const BrickIndex& index, int row, int layer) {
   constexpr int kLastBrick = 1 << (BrickIndex::kBricksPerWord - 1);
-  const int last_row = std::min((row + 1) * BrickIndex::kHeight, march_.ny);
-  const int last_plane = std::min((layer + 1) * BrickIndex::kHeight, march_.nz);
+  constexpr int kHeight = BrickIndex::kHeight;
+  const BrickRows rows{.first_row = row * kHeight,
+                       .last_row = std::min((row + 1) * kHeight, march_.ny),
+                       .first_plane = layer * kHeight,
+                       .last_plane = std::min((layer + 1) * kHeight, march_.nz)};
   for (int word = 0; word < march_.words; ++word) {
     // A brick's cells reach to the first grid points of its upper neighbours.
     int reached = 0;
@@ -126,19 +128,7 @@ void RowMarch::classify_brick_row(const ExtractSettings& settings, const BrickIn
         uniform |= ((std::uint64_t(1) << BrickIndex::kWidth) - 1) << (BrickIndex::kWidth * b);
     const int valid = march_.nx - 64 * word;
     if (valid < 64) uniform &= (std::uint64_t(1) << valid) - 1;
-    for (int k = layer * BrickIndex::kHeight; k < last_plane; ++k) {
-      for (int j = row * BrickIndex::kHeight; j < last_row; ++j) {
-        std::uint64_t bits = uniform;
-        for (int b = 0; b < bricks; ++b) {
-          if ((own >> b & 1) == 0) continue;
-          const int first = 64 * word + BrickIndex::kWidth * b;
-          std::uint64_t part = 0;
-          classify_row(march_, march_.row_values(j, k) + first, std::min(BrickIndex::kWidth, march_.nx - first), &part);
-          bits |= part << (BrickIndex::kWidth * b);
-        }
-        march_.row_bits(j, k)[word] = bits;
-      }
-    }
+    classify_bricks(march_, rows, word, unsigned(own), uniform);
   }
 }
 

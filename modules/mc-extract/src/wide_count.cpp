@@ -31,22 +31,40 @@ std::uint64_t inside_bits(const Floats d, const Vector value, const Vector isova
   return bits;
 }
 
-void classify_row_wide(const MarchState& march, const float* values, int count, std::uint64_t* bits) {
+/// The inside bits of up to 64 values.
+std::uint64_t classify_word(const MarchState& march, const float* values, int count) {
   const Floats d;
   const int lanes = int(hn::Lanes(d));
   const auto isovalue = hn::Set(d, march.isovalue);
-  for (int first = 0; first < count; first += 64) {
-    const int here = std::min(64, count - first);
-    std::uint64_t word = 0;
-    int i = 0;
-    for (; i + lanes <= here; i += lanes)
-      word |= inside_bits(d, hn::LoadU(d, values + first + i), isovalue, march.outer) << i;
-    for (; i < here; ++i) {
-      const float value = values[first + i];
-      const bool inside = march.outer == OuterSide::kLower ? value >= march.isovalue : value <= march.isovalue;
-      word |= std::uint64_t(inside) << i;
+  std::uint64_t word = 0;
+  int i = 0;
+  for (; i + lanes <= count; i += lanes) word |= inside_bits(d, hn::LoadU(d, values + i), isovalue, march.outer) << i;
+  for (; i < count; ++i) {
+    const bool inside = march.outer == OuterSide::kLower ? values[i] >= march.isovalue : values[i] <= march.isovalue;
+    word |= std::uint64_t(inside) << i;
+  }
+  return word;
+}
+
+void classify_row_wide(MarchState& march, int j, int k) {
+  const float* values = march.row_values(j, k);
+  std::uint64_t* bits = march.row_bits(j, k);
+  for (int word = 0; word < march.words; ++word)
+    bits[word] = classify_word(march, values + 64 * word, std::min(64, march.nx - 64 * word));
+}
+
+void classify_bricks_wide(MarchState& march, const BrickRows& rows, int word, unsigned active, std::uint64_t uniform) {
+  const int count = std::min(64, march.nx - 64 * word);
+  for (int k = rows.first_plane; k < rows.last_plane; ++k) {
+    for (int j = rows.first_row; j < rows.last_row; ++j) {
+      const float* values = march.row_values(j, k) + 64 * word;
+      std::uint64_t bits = uniform;
+      for (unsigned left = active; left != 0; left &= left - 1) {
+        const int first = 16 * std::countr_zero(left);
+        bits |= classify_word(march, values + first, std::min(16, count - first)) << first;
+      }
+      march.row_bits(j, k)[word] = bits;
     }
-    bits[first / 64] = word;
   }
 }
 
@@ -168,12 +186,15 @@ HWY_AFTER_NAMESPACE();
 namespace isolux::mc {
 
 HWY_EXPORT(classify_row_wide);
+HWY_EXPORT(classify_bricks_wide);
 HWY_EXPORT(find_range_wide);
 HWY_EXPORT(count_slab_indexed);
 HWY_EXPORT(count_slab_half_edges);
 
-void classify_row(const MarchState& march, const float* values, int count, std::uint64_t* bits) {
-  HWY_DYNAMIC_DISPATCH(classify_row_wide)(march, values, count, bits);
+void classify_row(MarchState& march, int j, int k) { HWY_DYNAMIC_DISPATCH(classify_row_wide)(march, j, k); }
+
+void classify_bricks(MarchState& march, const BrickRows& rows, int word, unsigned active, std::uint64_t uniform) {
+  HWY_DYNAMIC_DISPATCH(classify_bricks_wide)(march, rows, word, active, uniform);
 }
 
 void find_range(const Volume& volume, const Index3& first, const Index3& last, float& low, float& high) {

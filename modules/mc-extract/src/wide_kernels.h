@@ -10,8 +10,20 @@
 /// on every machine: IEEE operations in one order, no fused multiply-add, no approximate reciprocal.
 namespace isolux::mc {
 
-/// Sets the inside bits of `count` values that start at a word's first voxel; bits beyond are cleared.
-void classify_row(const MarchState& march, const float* values, int count, std::uint64_t* bits);
+/// Sets the inside bits of a row.
+void classify_row(MarchState& march, int j, int k);
+
+/// The grid points of a row and a layer of bricks: rows and planes [first, last).
+struct BrickRows {
+  int first_row;
+  int last_row;
+  int first_plane;
+  int last_plane;
+};
+
+/// Sets the inside bits of one word in each of these rows: those of the bricks of 16 voxels that `active` has a bit for
+/// from their values, the others from `uniform`.
+void classify_bricks(MarchState& march, const BrickRows& rows, int word, unsigned active, std::uint64_t uniform);
 
 /// Smallest and largest value of the grid points first to last, both included, at most 17 along x; -inf and inf where
 /// one of them is NaN.

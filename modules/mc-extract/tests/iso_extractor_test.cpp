@@ -1,0 +1,176 @@
+// The fast marching cubes against the plain one, and its index, buffers and instruction sets against each other.
+#include <gtest/gtest.h>
+#include <hwy/targets.h>
+#include <isolux/core/error.h>
+#include <isolux/mc_extract.h>
+
+#include <algorithm>
+#include <tuple>
+
+#include "build_mesh.h"
+#include "fields.h"
+#include "mesh_laws.h"
+#include "plain_marching_cubes.h"
+
+namespace isolux {
+namespace {
+
+using namespace isolux::testing;
+
+IndexedMesh indexed(const Volume& volume, const ExtractSettings& settings,
+                    IsoExtractor::Index index = IsoExtractor::Index::kNone) {
+  IndexedMesh mesh;
+  IsoExtractor(volume, {}, index).extract(settings, {}, mesh);
+  return mesh;
+}
+
+bool identical(const IndexedMesh& a, const IndexedMesh& b) {
+  return a.positions == b.positions && a.normals == b.normals && a.triangles == b.triangles;
+}
+
+/// A triangle by its corners' places to 1/64 of a grid step and smaller, the smallest first: alike for two numberings.
+using Corner = std::tuple<float, float, float>;
+std::vector<std::array<Corner, 3>> sorted_triangles(const IndexedMesh& mesh) {
+  std::vector<std::array<Corner, 3>> result;
+  for (const Triangle& t : mesh.triangles) {
+    std::array<Corner, 3> corners;
+    for (int i = 0; i < 3; ++i) {
+      const Vec3f p = glm::round(mesh.positions[t[i]] * 4096.0f);
+      corners[i] = {p.x, p.y, p.z};
+    }
+    std::rotate(corners.begin(), std::min_element(corners.begin(), corners.end()), corners.end());
+    result.push_back(corners);
+  }
+  std::sort(result.begin(), result.end());
+  return result;
+}
+
+/// Values in steps of 1/256, so that positions are the same in float and in double at the rounding above but for ties.
+Volume stepped_noise(const Index3& size, std::uint64_t seed) {
+  Volume volume = noise(size, seed, 256);
+  return volume;
+}
+
+TEST(IsoExtractor, AgreesWithThePlainWay) {
+  for (int seed = 0; seed < 50; ++seed) {
+    const Index3 size = seed % 5 == 0 ? Index3(63 + seed, 3, 4) : random_size(seed);
+    const Volume volume = stepped_noise(size, seed);
+    const ExtractSettings settings{.isovalue = 100.5f, .outer = seed % 2 == 0 ? OuterSide::kLower : OuterSide::kHigher};
+    const IndexedMesh plain = plain_marching_cubes(volume, settings);
+    const IndexedMesh fast = indexed(volume, settings);
+    ASSERT_EQ(fast.positions.size(), plain.positions.size());
+    ASSERT_EQ(fast.triangles.size(), plain.triangles.size());
+    // Both turn corners the same way round, so a mesh matches as a whole when its triangles do. Where rounding to the
+    // grid of 1/4096 falls differently in float and double, positions differ by one unit: compare those by distance.
+    const auto a = sorted_triangles(plain);
+    const auto b = sorted_triangles(fast);
+    std::size_t differing = 0;
+    for (std::size_t t = 0; t < a.size(); ++t) differing += a[t] != b[t] ? 1 : 0;
+    EXPECT_LE(differing, a.size() / 20) << seed;
+  }
+}
+
+TEST(IsoExtractor, HasThePlainWaysNormals) {
+  const Volume volume = gyroid(40);
+  const IndexedMesh mesh = indexed(volume, {.isovalue = 0.3f});
+  const TrilinearField field(volume);
+  for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
+    const Vec3 index = volume.lattice().frame.index(Vec3(mesh.positions[v]));
+    const Vec3 n = field.normal(index, OuterSide::kLower, GradientKind::kCentralDifferences);
+    EXPECT_LT(glm::distance(n, Vec3(mesh.normals[v])),
+              2e-4);  // differences of floats, at most 2^-24 of 1.5 a step of .1
+  }
+}
+
+TEST(IsoExtractor, NormalsOfSmoothFieldsAreRightToHalfADegree) {
+  const Volume volume = gyroid(128);
+  const IndexedMesh mesh = indexed(volume, {.isovalue = 0.3f});
+  double sum = 0.0;
+  for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
+    const Vec3 x = Vec3(mesh.positions[v]) * 12.566370614359172;
+    const Vec3 gradient(std::cos(x.x) * std::cos(x.y) - std::sin(x.z) * std::sin(x.x),
+                        std::cos(x.y) * std::cos(x.z) - std::sin(x.x) * std::sin(x.y),
+                        std::cos(x.z) * std::cos(x.x) - std::sin(x.y) * std::sin(x.z));
+    const double cosine = glm::dot(-glm::normalize(gradient), Vec3(mesh.normals[v]));
+    const double degrees = std::acos(std::min(1.0, cosine)) * 57.29577951308232;
+    sum += degrees * degrees;
+  }
+  EXPECT_LT(std::sqrt(sum / double(mesh.positions.size())), 0.5);
+}
+
+TEST(IsoExtractor, GivesTheSameWithAndWithoutTheIndex) {
+  std::vector<Volume> volumes = {gyroid(70), ball(81), noise(Index3(33, 9, 18), 3), noise(Index3(130, 5, 6), 4, 8)};
+  volumes.push_back(
+      sampled(Index3(100, 37, 50), {}, [](const Vec3& p) { return p.x == 77 && p.y == 20 ? 1.0 : -1.0; }));
+  for (const Volume& volume : volumes) {
+    const ValueRange range = value_range(volume);
+    IsoExtractor with(volume);
+    IsoExtractor without(volume, {}, IsoExtractor::Index::kNone);
+    for (const OuterSide outer : {OuterSide::kLower, OuterSide::kHigher}) {
+      for (const float part : {-0.1f, 0.0f, 0.1f, 0.5f, 0.9f, 1.0f, 1.1f}) {
+        const ExtractSettings settings{.isovalue = range.low + part * (range.high - range.low), .outer = outer};
+        IndexedMesh a;
+        IndexedMesh b;
+        with.extract(settings, {}, a);
+        without.extract(settings, {}, b);
+        EXPECT_TRUE(identical(a, b)) << part;
+        IsoMesh c;
+        IsoMesh d;
+        with.extract(settings, {}, c);
+        without.extract(settings, {}, d);
+        EXPECT_TRUE(isolux::testing::identical(c, d)) << part;
+        EXPECT_TRUE(is_manifold(c)) << part;
+      }
+    }
+  }
+}
+
+TEST(IsoExtractor, UsesAMeshAgainWithoutATrace) {
+  const Volume volume = gyroid(50);
+  IsoExtractor extractor(volume);
+  IsoMesh kept;
+  IndexedMesh kept_indexed;
+  for (const float isovalue : {0.0f, 1.2f, -0.5f, 9.0f, 0.7f, 0.0f}) {
+    const ExtractSettings settings{.isovalue = isovalue};
+    extractor.extract(settings, {}, kept);
+    extractor.extract(settings, {}, kept_indexed);
+    EXPECT_TRUE(isolux::testing::identical(kept, extractors().create("marching_cubes")->extract(volume, settings, {})));
+    EXPECT_TRUE(identical(kept_indexed, indexed(volume, settings)));
+    EXPECT_TRUE(is_manifold(kept));
+  }
+}
+
+TEST(IsoExtractor, BothMeshesAreOne) {
+  const Volume volume = noise(Index3(20, 70, 11), 8);
+  for (const NormalKind normals : {NormalKind::kGradient, NormalKind::kFaces}) {
+    const ExtractSettings settings{.isovalue = 0.6f, .normals = normals};
+    IsoMesh mesh;
+    IsoExtractor(volume).extract(settings, {}, mesh);
+    const IndexedMesh expected = indexed(volume, settings);
+    const IndexedMesh actual = mc::indexed_mesh(mesh);
+    EXPECT_EQ(actual.positions, expected.positions);
+    EXPECT_EQ(actual.normals, expected.normals);
+    EXPECT_EQ(actual.triangles, expected.triangles);
+  }
+}
+
+TEST(IsoExtractor, GivesTheSameBitsOnEveryInstructionSet) {
+  const Volume volume = noise(Index3(75, 20, 13), 21);
+  const IndexedMesh expected = indexed(volume, {.isovalue = 0.5f}, IsoExtractor::Index::kBricks);
+  std::int64_t targets = hwy::SupportedTargets();
+  for (; targets != 0; targets &= targets - 1) {
+    const std::int64_t target = targets & -targets;
+    hwy::SetSupportedTargetsForTest(target);
+    EXPECT_TRUE(identical(expected, indexed(volume, {.isovalue = 0.5f}, IsoExtractor::Index::kBricks))) << target;
+  }
+  hwy::SetSupportedTargetsForTest(0);
+}
+
+TEST(IsoExtractor, RefusesPlanesBeyondThirtyTwoBits) {
+  Volume volume;
+  volume.values = Grid<float>(Lattice{.size = Index3(70000, 2, 2), .frame = {}});
+  EXPECT_THROW(IsoExtractor{volume}, InvalidInput);
+}
+
+}  // namespace
+}  // namespace isolux
