@@ -105,18 +105,17 @@ std::uint8_t RowMarch::activity(int word, int row, int layer) const {
 }
 
 void RowMarch::classify_brick_row(const ExtractSettings& settings, const BrickIndex& index, int row, int layer) {
-  constexpr int kLastBrick = 1 << (BrickIndex::kBricksPerWord - 1);
   constexpr int kHeight = BrickIndex::kHeight;
   const BrickRows rows{.first_row = row * kHeight,
                        .last_row = std::min((row + 1) * kHeight, march_.ny),
                        .first_plane = layer * kHeight,
                        .last_plane = std::min((layer + 1) * kHeight, march_.nz)};
   for (int word = 0; word < march_.words; ++word) {
-    // A brick's cells reach to the first grid points of its upper neighbours.
+    // A word's cells reach to the first grid points of its upper neighbours.
     int reached = 0;
     for (int n = 0; n < 4; ++n) {
       reached |= activity(word, row - (n & 1), layer - (n >> 1));
-      reached |= activity(word - 1, row - (n & 1), layer - (n >> 1)) & kLastBrick;
+      reached |= activity(word - 1, row - (n & 1), layer - (n >> 1));
     }
     if (reached == 0) continue;
     const int own = activity(word, row, layer);
