@@ -1,6 +1,7 @@
 // A program outside isolux that adds a backend of its own: the resampler "nearest_sample" gives each texel its nearest
 // sample.
 #include <isolux/bake.h>
+#include <isolux/core.h>
 #include <isolux/volume_io.h>
 
 #include <cstdio>
