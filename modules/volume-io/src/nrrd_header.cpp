@@ -201,6 +201,7 @@ class Interpreter {
       header_.data_offset = text_.end;
       return;
     }
+    if (named->empty()) refuse("data file", "a file's name is needed");
     const bool numbered = named->find('%') != std::string::npos && nrrd_words(*named).size() >= 4;
     if (numbered || nrrd_words(*named).front() == "LIST")
       refuse("data file", "data spread over several files are not supported; join them first");

@@ -18,6 +18,7 @@
 #include <chrono>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <optional>
 #include <set>
 
 namespace isolux {
@@ -135,7 +136,9 @@ std::vector<Slice> dicom_slices(const std::string& source, const std::vector<std
 
 // The lattice of slices one behind another, sorted: the third axis is the step from slice to slice, which a tilted
 // gantry makes oblique to them.
-Lattice stack(const std::string& source, std::vector<Slice>& slices) {
+//
+// With a spacing from the caller (`gap`) slices are taken one behind another in the order of their places.
+Lattice stack(const std::string& source, std::vector<Slice>& slices, std::optional<double> gap) {
   Lattice lattice = slices.front().lattice;
   const Mat3 axes = lattice.frame.axes;
   const Vec3 normal = glm::normalize(glm::cross(axes[0], axes[1]));
@@ -155,6 +158,10 @@ Lattice stack(const std::string& source, std::vector<Slice>& slices) {
   lattice.frame.origin = slices.front().lattice.frame.origin;
   if (slices.size() == 1) return lattice;
   lattice.size.z = int(slices.size());
+  if (gap) {
+    lattice.frame.axes[2] = normal * *gap;
+    return lattice;
+  }
   const Vec3 step = (slices.back().lattice.frame.origin - lattice.frame.origin) / double(slices.size() - 1);
   for (std::size_t i = 0; i < slices.size(); ++i) {
     const double off = glm::distance(slices[i].lattice.frame.origin, lattice.frame.origin + double(i) * step);
@@ -162,16 +169,17 @@ Lattice stack(const std::string& source, std::vector<Slice>& slices) {
     if (!(off <= 1e-2 * glm::length(step)) || !(std::fabs(glm::dot(step, normal)) > 0.0))
       throw InvalidInput(
           fmt::format("{}: the DICOM slices are not evenly spaced: {} lies {:.3g} mm off its place in a "
-                      "stack of {} at {:.4g} mm",
+                      "stack of {} at {:.4g} mm; --spacing takes them as evenly spaced all the same",
                       source, slices[i].path, off, slices.size(), glm::length(step)));
   }
   lattice.frame.axes[2] = step;
   return lattice;
 }
 
-void send_dicom(const std::string& source, const std::vector<std::string>& files, const SendBytes& send) {
+void send_dicom(const std::string& source, const std::vector<std::string>& files, std::optional<double> gap,
+                const SendBytes& send) {
   auto slices = dicom_slices(source, files);
-  const Lattice lattice = stack(source, slices);
+  const Lattice lattice = stack(source, slices, gap);
   const bool one_type =
       std::all_of(slices.begin(), slices.end(), [&](const Slice& s) { return s.type == slices[0].type; });
   detail::send_volume(send, {.lattice = lattice,
@@ -211,18 +219,20 @@ Plan tiff_plan(const std::string& source, const std::vector<std::string>& files,
       .size = size, .space = kPlain, .work = [files, size](const SendBytes& send) { send_tiffs(files, size, send); }};
 }
 
-Plan dicom_plan(const std::string& source, const std::vector<std::string>& files) {
+Plan dicom_plan(const std::string& source, const std::vector<std::string>& files, const ReadOptions& options) {
   Index3 size(0);
   for (const auto& file : files) size = detail::check_dicom(file).size;
   size.z = int(files.size());
-  return {.size = size, .space = kAnatomical, .work = [source, files](const SendBytes& send) {
-            send_dicom(source, files, send);
+  std::optional<double> gap;
+  if (options.spacing) gap = options.spacing->z;
+  return {.size = size, .space = kAnatomical, .work = [source, files, gap](const SendBytes& send) {
+            send_dicom(source, files, gap, send);
           }};
 }
 
 Plan folder_plan(const std::string& source, const ReadOptions& options) {
   if (const auto slices = detail::files_in_folder(source, detail::is_dicom); !slices.empty())
-    return dicom_plan(source, slices);
+    return dicom_plan(source, slices, options);
   const auto pages = detail::files_in_folder(source, detail::is_tiff);
   if (pages.empty()) throw InvalidInput(fmt::format("{}: a folder without DICOM slices or TIFF pages", source));
   return tiff_plan(source, pages, options);
@@ -231,7 +241,7 @@ Plan folder_plan(const std::string& source, const ReadOptions& options) {
 Plan plan(const std::string& source, const ReadOptions& options) {
   if (detail::is_directory(source)) return folder_plan(source, options);
   (void)detail::require_file(source);
-  if (detail::is_dicom(source)) return dicom_plan(source, {source});
+  if (detail::is_dicom(source)) return dicom_plan(source, {source}, options);
   if (detail::is_tiff(source)) return tiff_plan(source, {source}, options);
   if (detail::is_legacy_vtk(source))
     return {.size = detail::check_legacy_vtk(source).size, .space = kPlain, .work = [source](const SendBytes& send) {

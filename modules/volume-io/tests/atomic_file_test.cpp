@@ -1,0 +1,88 @@
+#include "support.h"
+
+#include <gmock/gmock.h>
+#include <sys/stat.h>
+
+#include <thread>
+
+namespace isolux {
+namespace {
+using testing::HasSubstr;
+
+TEST(AtomicFile, LeavesTheOldFileAndNothingElseWhenWritingFails) {
+  const test::TemporaryFolder folder;
+  const auto path = folder.write("out.txt", "old");
+  EXPECT_THROW(write_atomically(path,
+                                [](std::ostream& out) {
+                                  out << "half";
+                                  throw Cancelled("interrupted");
+                                }),
+               Cancelled);
+  EXPECT_EQ(test::read_file(path), "old");
+  EXPECT_EQ(folder.entries(), 1u);
+  EXPECT_THAT(
+      test::error_of([&] { write_atomically(path, [](std::ostream& out) { out.setstate(std::ios::badbit); }); }),
+      HasSubstr("out.txt: writing failed"));
+  EXPECT_EQ(test::read_file(path), "old");
+  EXPECT_EQ(folder.entries(), 1u);
+}
+
+TEST(AtomicFile, ReplacesTheOldFileWithAllOfTheNew) {
+  const test::TemporaryFolder folder;
+  const auto path = folder.write("out.tar.gz", "old");
+  std::string named;
+  write_atomically_by_name(path, [&](const std::string& temporary) {
+    named = temporary;
+    EXPECT_EQ(test::read_file(path), "old") << "seen by others until the end";
+    std::ofstream(temporary) << "new";
+  });
+  EXPECT_TRUE(named.ends_with(".tar.gz")) << named;
+  EXPECT_EQ(std::filesystem::path(named).parent_path(), std::filesystem::path(path).parent_path());
+  EXPECT_EQ(test::read_file(path), "new");
+  EXPECT_EQ(folder.entries(), 1u);
+}
+
+TEST(AtomicFile, FollowsTheUmaskAndSymbolicLinks) {
+  const test::TemporaryFolder folder;
+  const mode_t before = umask(027);
+  write_atomically(folder.file("a"), [](std::ostream& out) { out << 1; });
+  umask(before);
+  struct stat status {};
+  ASSERT_EQ(stat(folder.file("a").c_str(), &status), 0);
+  EXPECT_EQ(status.st_mode & 0777u, 0640u);
+
+  std::filesystem::create_symlink(folder.file("a"), folder.file("link"));
+  write_atomically(folder.file("link"), [](std::ostream& out) { out << 2; });
+  EXPECT_TRUE(std::filesystem::is_symlink(folder.file("link")));
+  EXPECT_EQ(test::read_file(folder.file("a")), "2");
+}
+
+TEST(AtomicFile, NamesAMissingFolder) {
+  const test::TemporaryFolder folder;
+  const auto write = [](std::ostream& out) { out << 1; };
+  EXPECT_THAT(test::error_of([&] { write_atomically(folder.file("none/a"), write); }),
+              testing::AllOf(HasSubstr("there is no folder"), HasSubstr("none")));
+  EXPECT_THAT(test::error_of([&] { write_atomically(folder.file(""), write); }), HasSubstr("directory"));
+}
+
+TEST(AtomicFile, WritesIntoADeviceInsteadOfReplacingIt) {
+  write_atomically("/dev/null", [](std::ostream& out) { out << "gone"; });
+  EXPECT_TRUE(std::filesystem::is_character_file("/dev/null"));
+}
+
+TEST(AtomicFile, LetsManyThreadsWriteOneFile) {
+  const test::TemporaryFolder folder;
+  const std::string path = folder.file("shared");
+  {
+    std::vector<std::jthread> threads;
+    for (char c = 'a'; c < 'i'; ++c)
+      threads.emplace_back(
+          [&, c] { write_atomically(path, [&](std::ostream& out) { out << std::string(100000, c); }); });
+  }
+  const std::string text = test::read_file(path);
+  EXPECT_EQ(text, std::string(100000, text.front()));
+  EXPECT_EQ(folder.entries(), 1u);
+}
+
+}  // namespace
+}  // namespace isolux
