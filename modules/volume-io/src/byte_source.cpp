@@ -44,7 +44,11 @@ class GzipSource final : public ByteSource {
   std::size_t read(std::span<std::byte> into) override {
     std::size_t done = 0;
     while (done < into.size() && !ended_) {
-      if (stream_.avail_in == 0 && !refill()) break;
+      if (stream_.avail_in == 0 && !refill()) {
+        // What has been inflated goes out first; the caller knows how much it needs.
+        if (done > 0) break;
+        throw IoError(fmt::format("{}: the compressed data end early", path_));
+      }
       const std::size_t room = std::min<std::size_t>(into.size() - done, std::numeric_limits<uInt>::max());
       stream_.next_out = reinterpret_cast<Bytef*>(into.data() + done);
       stream_.avail_out = uInt(room);

@@ -64,7 +64,7 @@ std::uint64_t inflated_bytes(const std::string& path, std::uint64_t offset, std:
   while (total < most) {
     const std::size_t got = source->read(buffer);
     total += got;
-    if (got < buffer.size()) break;
+    if (got == 0) break;
   }
   return total;
 }

@@ -1,0 +1,145 @@
+#include "samples.h"
+
+#include <gmock/gmock.h>
+
+#include <set>
+#include <thread>
+
+// What every reader of the catalogue owes, on a small file of its own and on files that are none.
+namespace isolux {
+namespace {
+using testing::HasSubstr;
+
+struct Sample {
+  std::string reader;
+  std::string name;
+  std::string bytes;
+  ReadOptions options;
+};
+
+std::vector<Sample> samples() {
+  const std::string data = test::bytes_of(test::ramp());
+  const ReadOptions spaced{.raw = {}, .spacing = Vec3(1), .allow_external_data = false};
+  return {{"raw", "a_3x2x2_int16.raw", data, {}},
+          {"nrrd",
+           "a.nrrd",
+           "NRRD0004\ntype: short\ndimension: 3\nsizes: 3 2 2\nendian: little\nencoding: raw\n\n" + data,
+           {}},
+          {"mrc", "a.mrc", test::mrc_sample(), {}},
+          {"itk", "a.nii", test::nifti_sample(), {}},
+          {"itk", "a.nii.gz", test::gzipped(test::nifti_sample()), {}},
+          {"itk", "a.mha", test::meta_header("LOCAL") + data, {}},
+          {"itk", "a.vtk", test::vtk_header("BINARY") + data, {}},
+          {"itk", "a.tif", test::tiff_sample(0), spaced},
+          {"itk", "a.dcm", test::dicom_sample({}), {}}};
+}
+
+class ReaderContract : public testing::TestWithParam<Sample> {
+ protected:
+  void SetUp() override {
+    if (!test::has_reader(GetParam().reader)) GTEST_SKIP() << "not in this build";
+  }
+  test::TemporaryFolder folder_;
+};
+
+TEST_P(ReaderContract, ClaimsItsOwnFileMostSurely) {
+  const Sample& sample = GetParam();
+  const auto registry = readers();
+  std::vector<std::string> names = {sample.name};
+  const bool needs_name = sample.reader == "raw" || sample.name.starts_with("a.nii");
+  if (!needs_name) names.emplace_back("no-extension");
+  for (const auto& name : names) {
+    const auto path = folder_.write(name, sample.bytes);
+    std::set<std::pair<int, std::string>> claims;
+    for (const auto& info : registry.backends()) {
+      if (info.unavailable.empty()) claims.emplace(registry.create(info.name)->claims(path, sample.options), info.name);
+    }
+    EXPECT_EQ(claims.rbegin()->second, sample.reader);
+    EXPECT_GT(claims.rbegin()->first, std::next(claims.rbegin())->first) << "no tie";
+    EXPECT_EQ(test::reading_error(path, sample.options), "");
+  }
+}
+
+TEST_P(ReaderContract, RefusesEveryTruncationNamingTheFile) {
+  const Sample& sample = GetParam();
+  // Many lengths of our own formats, fewer where each costs a process; always the last byte.
+  const std::size_t step = sample.reader == "itk" ? 37 : 7;
+  for (std::size_t length = 0; length < sample.bytes.size(); length += std::min(step, sample.bytes.size() - length)) {
+    const auto path = folder_.write(sample.name, sample.bytes.substr(0, length));
+    EXPECT_THAT(test::reading_error(path, sample.options), HasSubstr(sample.name)) << length;
+  }
+  const auto path = folder_.write(sample.name, sample.bytes.substr(0, sample.bytes.size() - 1));
+  EXPECT_THAT(test::reading_error(path, sample.options), HasSubstr(sample.name));
+}
+
+TEST_P(ReaderContract, GivesTheSameVolumeOnManyThreads) {
+  const Sample& sample = GetParam();
+  const auto path = folder_.write(sample.name, sample.bytes);
+  const auto reader = readers().create(sample.reader);
+  const std::string hash = volume_sha256(reader->read(path, sample.options, {}));
+  std::vector<std::string> hashes(4);
+  {
+    std::vector<std::jthread> threads;
+    for (auto& own : hashes) threads.emplace_back([&] { own = volume_sha256(reader->read(path, sample.options, {})); });
+  }
+  for (const auto& own : hashes) EXPECT_EQ(own, hash);
+}
+
+TEST_P(ReaderContract, StopsWhenAsked) {
+  const auto path = folder_.write(GetParam().name, GetParam().bytes);
+  std::stop_source stop;
+  stop.request_stop();
+  isolux::Run run;
+  run.stop = stop.get_token();
+  EXPECT_THROW((void)read_volume(path, GetParam().options, run), Cancelled);
+}
+
+TEST_P(ReaderContract, TakesTheCallersSpacing) {
+  ReadOptions options = GetParam().options;
+  options.spacing = Vec3(3, 5, 7);
+  const auto path = folder_.write(GetParam().name, GetParam().bytes);
+  const Vec3 spacing = read_volume(path, options).lattice().frame.spacing();
+  // Directions that are normalised and scaled again: a few roundings.
+  for (int a = 0; a < 3; ++a) EXPECT_NEAR(spacing[a], (*options.spacing)[a], 1e-14 * 7);
+}
+
+INSTANTIATE_TEST_SUITE_P(AllFormats, ReaderContract, testing::ValuesIn(samples()), [](const auto& test) {
+  std::string name = test.param.name;
+  for (char& c : name) c = std::isalnum(static_cast<unsigned char>(c)) != 0 ? c : '_';
+  return name;
+});
+
+TEST(Readers, NameWhatCannotBeRead) {
+  const test::TemporaryFolder folder;
+  EXPECT_THAT(test::reading_error(folder.file("none.nrrd")), HasSubstr("none.nrrd: no such file"));
+  EXPECT_THAT(test::reading_error(folder.write("empty.nii", "")), HasSubstr("empty.nii: "));
+  EXPECT_THAT(test::reading_error(folder.write("text.txt", "hello")),
+              HasSubstr("not a volume that can be read: known are"));
+  std::filesystem::create_directory(folder.file("dir.nrrd"));
+  EXPECT_THAT(test::reading_error(folder.file("dir.nrrd")), HasSubstr("dir.nrrd"));
+  EXPECT_THAT(test::reading_error("/dev/zero"), HasSubstr("not a regular file"));
+  EXPECT_THAT(test::reading_error(""), HasSubstr("no such file"));
+}
+
+TEST(Readers, SayWhichReaderTheBuildLacks) {
+  Registry<VolumeReader> registry;
+  registry.add_unavailable("itk", "package ITK was not found");
+  const test::TemporaryFolder folder;
+  EXPECT_THAT(test::error_of([&] { (void)read_volume(folder.write("a.nii", "x"), {}, {}, registry); }),
+              HasSubstr("itk: package ITK was not found"));
+}
+
+TEST(Readers, PreferContentToTheName) {
+  const test::TemporaryFolder folder;
+  const std::string nrrd = "NRRD0004\ntype: uint8\ndimension: 3\nsizes: 1 1 1\nencoding: raw\n\na";
+  EXPECT_EQ(read_volume(folder.write("a.raw", nrrd)).values(0, 0, 0), float('a'));
+  // Unless the caller says what it is.
+  const ReadOptions raw{
+      .raw = RawLayout{.size = Index3(int(nrrd.size()), 1, 1), .type = ScalarType::kUint8, .big_endian = false},
+      .spacing = {},
+      .allow_external_data = false};
+  EXPECT_EQ(read_volume(folder.file("a.raw"), raw).values(0, 0, 0), float('N'));
+}
+
+}  // namespace
+}  // namespace isolux
