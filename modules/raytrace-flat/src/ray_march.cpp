@@ -28,9 +28,10 @@ struct RayMarch::Ray {
   double scale = 1.0;   ///< length of the caller's direction in ours
   double offset = 0.0;  ///< the caller's t at our t = 0
   double level = 0.0;
-  double inner = 1.0;            ///< +1 if the side the ray must not enter has the higher values, else -1
-  bool fresh = false;            ///< still at its start on the level set: the root there is known
-  std::size_t brick = kNoBrick;  ///< the finest brick known to be worth entering
+  double inner = 1.0;             ///< +1 if the side the ray must not enter has the higher values, else -1
+  bool fresh = false;             ///< still at its start on the level set: the root there is known
+  std::size_t brick = kNoBrick;   ///< of 4^3 cells, known to be worth entering
+  std::size_t eighth = kNoBrick;  ///< of 2^3 cells, too
 };
 
 /// From the ray's place to the next plane: through a brick that cannot hold the level set, or through one cell.
@@ -88,23 +89,28 @@ std::array<double, 3> RayMarch::start_in_cell(const Ray& ray) const {
   return {ray.origin[0] - ray.cell[0], ray.origin[1] - ray.cell[1], ray.origin[2] - ray.cell[2]};
 }
 
-void RayMarch::plan(Ray& ray, Step& step, TraceCounters& counters) const {
-  step.shift = 0;
-  const auto& levels = macrocells_.levels();
-  const std::size_t brick = levels[0].offset(ray.cell);
+// Bricks of 4^3 cells are asked first: their table is small enough to stay in a near cache. Only then is it worth
+// looking at their eighths, or at the larger bricks around them.
+int RayMarch::free_brick(Ray& ray, TraceCounters& counters) const {
+  const auto out_of_reach = [&ray](const Macrocells::Level& level, std::size_t b) {
+    return ray.inner > 0.0 ? double(level.high[b]) < ray.level : double(level.low[b]) > ray.level;
+  };
+  const auto& [eighths, bricks, blocks] = macrocells_.levels();
+  const std::size_t brick = bricks.offset(ray.cell);
   if (brick != ray.brick) {
-    const auto out_of_reach = [&ray](const Macrocells::Level& level, std::size_t b) {
-      return ray.inner > 0.0 ? double(level.high[b]) < ray.level : double(level.low[b]) > ray.level;
-    };
-    if (out_of_reach(levels[0], brick)) {
-      std::size_t i = 0;
-      while (i + 1 < levels.size() && out_of_reach(levels[i + 1], levels[i + 1].offset(ray.cell))) ++i;
-      step.shift = levels[i].shift;
-    } else {
-      ray.brick = brick;
-      ++counters.macrocells;
-    }
+    if (out_of_reach(bricks, brick)) return out_of_reach(blocks, blocks.offset(ray.cell)) ? blocks.shift : bricks.shift;
+    ray.brick = brick;
+    ++counters.macrocells;
   }
+  const std::size_t eighth = eighths.offset(ray.cell);
+  if (eighth == ray.eighth) return 0;
+  if (out_of_reach(eighths, eighth)) return eighths.shift;
+  ray.eighth = eighth;
+  return 0;
+}
+
+void RayMarch::plan(Ray& ray, Step& step, TraceCounters& counters) const {
+  step.shift = free_brick(ray, counters);
   step.t = kInfinity;
   for (int a = 0; a < 3; ++a) {
     step.plane[a] = ((ray.cell[a] >> step.shift) + ray.forward[a]) << step.shift;
@@ -150,8 +156,14 @@ std::optional<LevelSetHit> RayMarch::visit_cell(Ray& ray, const Step& step, Root
   ++counters.cells;
   CellCorners corners;
   load(ray, corners);
-  const bool reached = ray.inner > 0.0 ? *std::max_element(corners.begin(), corners.end()) >= ray.level
-                                       : *std::min_element(corners.begin(), corners.end()) <= ray.level;
+  // Both bounds by plain comparisons: which corner is the largest is too random for branches.
+  double low = corners[0];
+  double high = corners[0];
+  for (const double v : corners) {
+    low = std::min(low, v);
+    high = std::max(high, v);
+  }
+  const bool reached = ray.inner > 0.0 ? high >= ray.level : low <= ray.level;
   if (!reached) {
     ray.fresh = false;
     return std::nullopt;

@@ -32,6 +32,8 @@ class RayMarch {
   struct Part;
   [[nodiscard]] bool make_ray(const Vec3& origin, const Vec3& direction, double limit, Ray& ray) const;
   [[nodiscard]] std::optional<LevelSetHit> march(Ray& ray, RootWish wish, TraceCounters& counters) const;
+  /// The shift of the largest brick about the ray's cell that cannot hold the level set, 0 if there is none.
+  [[nodiscard]] int free_brick(Ray& ray, TraceCounters& counters) const;
   void plan(Ray& ray, Step& step, TraceCounters& counters) const;
   [[nodiscard]] std::optional<LevelSetHit> visit_cell(Ray& ray, const Step& step, RootWish wish,
                                                       TraceCounters& counters) const;

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "path_tracer.h"
+#include "trace_counters.h"
 
 namespace isolux {
 namespace {
@@ -50,14 +51,6 @@ double variance_of_mean(std::vector<PathValue>& paths, int channels) {
   }
   const auto n = double(paths.size());
   return sum / (2.0 * (n - 1.0) * n * channels);
-}
-
-void add(TraceCounters& sum, const TraceCounters& part) {
-  sum.rays += part.rays;
-  sum.hits += part.hits;
-  sum.macrocells += part.macrocells;
-  sum.cells += part.cells;
-  sum.cubics += part.cubics;
 }
 
 void require_usable(const Sites& sites, const TraceSettings& settings) {
