@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "build_mesh.h"
+#include "cap_box.h"
 #include "openmesh_memory.h"
 #include "row_march.h"
 
@@ -11,7 +12,7 @@ namespace isolux {
 
 class IsoExtractor::Implementation {
  public:
-  Implementation(const Volume& volume, const Run& run, Index index) : march_(volume) {
+  Implementation(const Volume& volume, const Run& run, Index index) : volume_(&volume), march_(volume) {
     if (index == Index::kBricks) index_.emplace(volume, run);
   }
 
@@ -20,13 +21,20 @@ class IsoExtractor::Implementation {
     resize(mesh.positions, size.vertices);
     resize(mesh.normals, size.vertices);
     resize(mesh.triangles, size.triangles);
-    if (size.triangles == 0) return;
-    march_.write_vertices(run, &mesh.positions[0].x, &mesh.normals[0].x);
-    march_.write_triangles(run, mesh.triangles.data());
-    if (settings.normals == NormalKind::kFaces) mc::set_face_normals(mesh);
+    if (size.triangles > 0) {
+      march_.write_vertices(run, &mesh.positions[0].x, &mesh.normals[0].x);
+      march_.write_triangles(run, mesh.triangles.data());
+    }
+    mc::finish_mesh(mesh, *volume_, settings);
   }
 
   void extract(const ExtractSettings& settings, const Run& run, IsoMesh& mesh) {
+    if (settings.cap != CapKind::kNone || settings.min_component > 0) {
+      IndexedMesh indexed;
+      extract(settings, run, indexed);
+      mesh = mc::build_mesh(indexed);
+      return;
+    }
     const mc::MeshSize size = count(settings, run, mc::Connectivity::kHalfEdges);
     const mc::MeshMemory memory = mc::resize_mesh(mesh, size.vertices, size.edges, size.triangles);
     if (size.triangles == 0) return;
@@ -46,6 +54,7 @@ class IsoExtractor::Implementation {
     vector.resize(size);
   }
 
+  const Volume* volume_;
   mc::RowMarch march_;
   std::optional<mc::BrickIndex> index_;
 };

@@ -5,7 +5,7 @@
 #include <limits>
 #include <utility>
 
-#include "build_mesh.h"
+#include "cap_box.h"
 
 namespace isolux::mc {
 
@@ -14,10 +14,11 @@ constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
 }
 
 SurfaceBuilder::SurfaceBuilder(const Volume& volume, const ExtractSettings& settings)
-    : field_(volume),
+    : volume_(volume),
+      settings_(settings),
+      field_(volume),
       lattice_(volume.lattice()),
       level_set_(lattice_, settings),
-      normals_(settings.normals),
       gradient_to_world_(lattice_.frame.gradient_to_world()) {
   for (auto& plane : edge_vertices_) plane.assign(std::size_t(lattice_.size.x) * lattice_.size.y * 8, kNone);
 }
@@ -65,7 +66,7 @@ void SurfaceBuilder::add_triangle(std::uint32_t a, std::uint32_t b, std::uint32_
 }
 
 IndexedMesh SurfaceBuilder::take() {
-  if (normals_ == NormalKind::kFaces) set_face_normals(mesh_);
+  finish_mesh(mesh_, volume_, settings_);
   return std::move(mesh_);
 }
 

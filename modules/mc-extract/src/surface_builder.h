@@ -30,16 +30,17 @@ class SurfaceBuilder {
   [[nodiscard]] const LevelSet& level_set() const { return level_set_; }
   [[nodiscard]] float value(const Index3& at) const { return field_.data()[lattice_.offset(at.x, at.y, at.z)]; }
   [[nodiscard]] const Lattice& lattice() const { return lattice_; }
-  /// The mesh so far, with the normals that the settings ask for. Ends the use of the builder.
+  /// The mesh so far, with all that the settings ask for. Ends the use of the builder.
   [[nodiscard]] IndexedMesh take();
 
  private:
   [[nodiscard]] std::uint32_t push(const Vec3& index, const Vec3& uphill);
 
+  const Volume& volume_;
+  ExtractSettings settings_;
   TrilinearField field_;
   Lattice lattice_;
   LevelSet level_set_;
-  NormalKind normals_;
   Mat3 gradient_to_world_;
   std::array<std::vector<std::uint32_t>, 2> edge_vertices_;  ///< of two grid planes, 8 directions a point
   IndexedMesh mesh_;

@@ -6,4 +6,5 @@
 #include <isolux/mc_extract/iso_extractor.h>
 #include <isolux/mc_extract/iso_mesh.h>
 #include <isolux/mc_extract/large_vector.h>
+#include <isolux/mc_extract/measure_mesh.h>
 #include <isolux/mc_extract/write_mesh.h>

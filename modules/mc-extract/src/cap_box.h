@@ -1,0 +1,17 @@
+#pragma once
+
+#include <isolux/mc_extract/indexed_mesh.h>
+
+#include "level_set.h"
+
+namespace isolux::mc {
+
+/// Closes a level set's mesh by the part of the box's faces that is inside (CapKind::kBox), whichever way it was
+/// extracted: square by square of the faces, between the mesh's boundary edges there and the corners that are inside.
+void cap_box(IndexedMesh& mesh, const Volume& volume, const LevelSet& level_set);
+
+/// What the settings ask of an extracted mesh beyond its surface: the cap, then normals of faces, then leaving out
+/// small components.
+void finish_mesh(IndexedMesh& mesh, const Volume& volume, const ExtractSettings& settings);
+
+}  // namespace isolux::mc
