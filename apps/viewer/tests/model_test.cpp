@@ -1,14 +1,20 @@
 #include <gtest/gtest.h>
 #include <isolux/core/error.h>
+#include <isolux/volume_io/read.h>
 
 #include <atomic>
 #include <chrono>
 #include <future>
+#include <glm/geometric.hpp>
+#include <memory>
+#include <optional>
 #include <thread>
+#include <utility>
 
 #include "model/bake_worker.h"
 #include "model/document.h"
 #include "model/histogram.h"
+#include "model/surface.h"
 #include "model/surface_worker.h"
 
 namespace isolux::viewer {
@@ -43,7 +49,7 @@ TEST(Histogram, GivesAConstantVolumeItsValue) {
 /// Surfaces that only carry their settings; each waits until it is let through.
 class Gate {
  public:
-  Surface pass(const ExtractSettings& settings, const std::stop_token& stop) {
+  Surface pass(const ExtractSettings& settings, IndexedMesh memory, const std::stop_token& stop) {
     ++entered;
     while (!open) {
       if (stop.stop_requested()) throw Cancelled("interrupted");
@@ -51,6 +57,7 @@ class Gate {
     }
     Surface surface;
     surface.settings = settings;
+    surface.mesh = std::move(memory);
     return surface;
   }
   std::atomic<int> entered{0};
@@ -59,7 +66,8 @@ class Gate {
 
 TEST(SurfaceWorker, MakesTheNewestRequestAndSkipsThoseBetween) {
   Gate gate;
-  SurfaceWorker worker([&](const ExtractSettings& s, const std::stop_token& stop) { return gate.pass(s, stop); },
+  SurfaceWorker worker([&](const ExtractSettings& s, IndexedMesh m,
+                           const std::stop_token& stop) { return gate.pass(s, std::move(m), stop); },
                        [] {});
   EXPECT_TRUE(worker.idle());
   worker.request({.isovalue = 0.0f});
@@ -79,12 +87,51 @@ TEST(SurfaceWorker, MakesTheNewestRequestAndSkipsThoseBetween) {
 TEST(SurfaceWorker, StopsInTheMiddleOfASurface) {
   Gate gate;
   {
-    SurfaceWorker worker([&](const ExtractSettings& s, const std::stop_token& stop) { return gate.pass(s, stop); },
+    SurfaceWorker worker([&](const ExtractSettings& s, IndexedMesh m,
+                             const std::stop_token& stop) { return gate.pass(s, std::move(m), stop); },
                          [] {});
     worker.request({});
     while (gate.entered == 0) std::this_thread::yield();
   }
   EXPECT_EQ(gate.entered, 1);
+}
+
+TEST(SurfaceWorker, UsesTheMemoryOfAMeshThatCameBack) {
+  Gate gate;
+  gate.open = true;
+  SurfaceWorker worker([&](const ExtractSettings& s, IndexedMesh m,
+                           const std::stop_token& stop) { return gate.pass(s, std::move(m), stop); },
+                       [] {});
+  IndexedMesh mesh;
+  mesh.positions.resize(1000);
+  const Vec3f* memory = mesh.positions.data();
+  worker.recycle(std::move(mesh));
+  worker.request({});
+  std::optional<Surface> surface;
+  while (!(surface = worker.take())) std::this_thread::yield();
+  EXPECT_EQ(surface->mesh.positions.data(), memory);
+}
+
+TEST(SurfaceMaker, MakesTheSurfaceOfEveryBackend) {
+  const auto volume = std::make_shared<const Volume>(read_volume("gen:sphere:24"));
+  const Registry<Extractor> registry = extractors();
+  for (const BackendInfo& info : registry.backends()) {
+    SurfaceMaker maker(volume, registry, {.name = info.name, .settings = {}});
+    Surface surface;
+    for (const float radius : {0.4f, 0.25f}) {
+      surface = maker.make({.isovalue = -radius}, std::move(surface.mesh), {});
+      EXPECT_EQ(surface.error, "");
+      ASSERT_GT(surface.mesh.triangles.size(), 100u) << info.name;
+      ASSERT_EQ(surface.mesh.normals.size(), surface.mesh.positions.size());
+      for (std::size_t i = 0; i < surface.mesh.positions.size(); ++i) {
+        const Vec3f out = surface.mesh.positions[i] - Vec3f(0.5f);
+        // A chord of a cell's diagonal lies at most 3 (1/23)^2 / (8 r) = .003 within the sphere; normals by
+        // differences.
+        ASSERT_NEAR(glm::length(out), radius, 3e-3) << info.name;
+        ASSERT_GT(glm::dot(surface.mesh.normals[i], glm::normalize(out)), 0.99f) << info.name;
+      }
+    }
+  }
 }
 
 TEST(BakeWorker, HandsOverTheLightOrTheReason) {

@@ -123,7 +123,7 @@ TEST_P(Uploader, AgreesWithTheLookUpOnTheProcessor) {
   const std::vector<Vec3f> read = test::GlSampler().read(texture, places);
   for (std::size_t i = 0; i < places.size(); ++i) {
     const Vec3f expected = light.at_world(Vec3(places[i]) * Vec3(volume.size - 1));
-    for (int c = 0; c < channels(); ++c) {
+    for (int c = 0; c < 3; ++c) {
       // Weights of 8 bits on three axes between values that differ by at most 1.
       ASSERT_NEAR(read[i][c], expected[c], 3.0 / 512.0 + reading());
     }

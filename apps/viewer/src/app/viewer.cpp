@@ -35,7 +35,7 @@ void Viewer::open(Document document) {
 void Viewer::start(Document document) {
   worker_.reset();
   document_ = std::move(document);
-  surface_ = {};
+  shown_ = {};
   message_.clear();
   const std::shared_ptr<const Volume> volume = document_.volume;
   const Lattice& lattice = volume->lattice();
@@ -47,14 +47,13 @@ void Viewer::start(Document document) {
   trackball_ = std::make_unique<Trackball>(orbit_camera(lattice, settings_.azimuth_deg, settings_.elevation_deg, 1.0),
                                            box_middle(lattice), box_radius(lattice));
   if (document_.light) take_light(std::move(*document_.light));
-  std::shared_ptr<const Extractor> extractor =
-      stages_.extractors.create(settings_.extractor.name, settings_.extractor.settings);
+  const auto maker = std::make_shared<SurfaceMaker>(volume, stages_.extractors, settings_.extractor);
   worker_ = std::make_unique<SurfaceWorker>(
-      [extractor, volume, run = settings_.run](const ExtractSettings& wanted, std::stop_token stop) {
+      [maker, run = settings_.run](const ExtractSettings& wanted, IndexedMesh memory, std::stop_token stop) {
         Run stoppable = run;
         stoppable.stop = std::move(stop);
         stoppable.progress = {};
-        return extract_surface(*extractor, *volume, wanted, stoppable);
+        return maker->make(wanted, std::move(memory), stoppable);
       },
       wake_);
 }
@@ -212,9 +211,10 @@ void Viewer::say(const std::string& line) { message_ = line; }
 bool Viewer::update() {
   bool changed = bake_ != nullptr;
   if (auto surface = worker_->take()) {
-    surface_ = std::move(*surface);
-    renderer_->set_surface(surface_.mesh);
-    if (!surface_.error.empty()) say(surface_.error);
+    renderer_->set_surface(surface->mesh);
+    shown_ = {.triangles = surface->mesh.triangles.size(), .seconds = surface->seconds};
+    if (!surface->error.empty()) say(surface->error);
+    worker_->recycle(std::move(surface->mesh));
     changed = true;
   }
   if (bake_) {

@@ -77,6 +77,12 @@ class Viewer {
  private:
   enum class Drag { kNone, kSlider, kRotate, kPan, kZoom };
 
+  /// What is known of the surface that the renderer has.
+  struct Shown {
+    std::size_t triangles = 0;
+    double seconds = 0.0;  ///< that its extraction took
+  };
+
   void start(Document document);
   void request_surface();
   void take_light(LightFile light);
@@ -94,7 +100,7 @@ class Viewer {
   std::function<void()> wake_;
 
   Document document_;
-  Surface surface_;
+  Shown shown_;
   OuterSide outer_ = OuterSide::kLower;
   Layout layout_ = Layout::kLocal;
   SurfaceStyle style_ = SurfaceStyle::kShaded;

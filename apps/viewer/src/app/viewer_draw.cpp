@@ -46,8 +46,8 @@ std::string grouped(std::size_t count) {
 
 std::string Viewer::title() const {
   return fmt::format("isolux - {} - isovalue {:.5g} - {} triangles in {:.0f} ms - drawn in {:.1f} ms",
-                     short_name(document_.volume->name), slider_->value(), grouped(surface_.mesh.triangles.size()),
-                     1e3 * surface_.seconds, 1e3 * draw_seconds_);
+                     short_name(document_.volume->name), slider_->value(), grouped(shown_.triangles),
+                     1e3 * shown_.seconds, 1e3 * draw_seconds_);
 }
 
 void Viewer::draw_surface(const WindowSize& size) {
@@ -118,7 +118,7 @@ void Viewer::draw_texts(const WindowSize& size) {
     label(overlay_, margin, y, font, message_);
   } else if (!document_.light && !bake_) {
     label(overlay_, margin, y, font, advice());
-  } else if (surface_.mesh.triangles.empty() && worker_->idle()) {
+  } else if (shown_.triangles == 0 && worker_->idle()) {
     label(overlay_, margin, y, font, "no surface at this isovalue");
   }
   const std::string value = fmt::format("isovalue {:.5g}", slider_->value());

@@ -4,12 +4,15 @@
 #include <isolux/core/stopwatch.h>
 
 #include <new>
+#include <utility>
 
 namespace isolux::viewer {
 namespace {
 
-IndexedMesh indexed(const IsoMesh& mesh) {
-  IndexedMesh result;
+void assign(IndexedMesh& result, const IsoMesh& mesh) {
+  result.positions.clear();
+  result.normals.clear();
+  result.triangles.clear();
   result.positions.reserve(mesh.n_vertices());
   result.normals.reserve(mesh.n_vertices());
   result.triangles.reserve(mesh.n_faces());
@@ -25,27 +28,43 @@ IndexedMesh indexed(const IsoMesh& mesh) {
     for (const auto v : mesh.fv_range(f)) triangle[corner++] = std::uint32_t(v.idx());
     result.triangles.push_back(triangle);
   }
-  return result;
 }
 
 }  // namespace
 
-Surface extract_surface(const Extractor& extractor, const Volume& volume, const ExtractSettings& settings,
-                        const Run& run) {
+SurfaceMaker::SurfaceMaker(std::shared_ptr<const Volume> volume, const Registry<Extractor>& extractors,
+                           const BackendChoice& choice)
+    : volume_(std::move(volume)), extractor_(extractors.create(choice.name, choice.settings)) {
+  if (extractors.info(choice.name).name == "marching_cubes") extractor_.reset();
+}
+
+Surface SurfaceMaker::make(const ExtractSettings& settings, IndexedMesh memory, const Run& run) {
   Surface surface;
   surface.settings = settings;
+  surface.mesh = std::move(memory);
   const Stopwatch watch;
   try {
-    surface.mesh = indexed(extractor.extract(volume, settings, run));
+    extract(settings, run, surface.mesh);
   } catch (const Cancelled&) {
     throw;
   } catch (const Error& error) {
+    surface.mesh = {};
     surface.error = error.what();
   } catch (const std::bad_alloc&) {
+    surface.mesh = {};
     surface.error = "not enough memory for this surface";
   }
   surface.seconds = watch.seconds();
   return surface;
+}
+
+void SurfaceMaker::extract(const ExtractSettings& settings, const Run& run, IndexedMesh& mesh) {
+  if (extractor_) {
+    assign(mesh, extractor_->extract(*volume_, settings, run));
+    return;
+  }
+  if (!fast_) fast_.emplace(*volume_, run);
+  fast_->extract(settings, run, mesh);
 }
 
 }  // namespace isolux::viewer

@@ -19,6 +19,11 @@ void SurfaceWorker::request(const ExtractSettings& settings) {
   wake_.notify_one();
 }
 
+void SurfaceWorker::recycle(IndexedMesh mesh) {
+  const std::scoped_lock lock(mutex_);
+  spare_ = std::move(mesh);
+}
+
 std::optional<Surface> SurfaceWorker::take() {
   const std::scoped_lock lock(mutex_);
   return std::exchange(ready_, std::nullopt);
@@ -32,14 +37,16 @@ bool SurfaceWorker::idle() const {
 void SurfaceWorker::work(std::stop_token stop) {
   while (true) {
     ExtractSettings settings;
+    IndexedMesh memory;
     {
       std::unique_lock lock(mutex_);
       if (!wake_.wait(lock, stop, [this] { return wanted_.has_value(); })) return;
       settings = *std::exchange(wanted_, std::nullopt);
+      memory = std::exchange(spare_, {});
       busy_ = true;
     }
     try {
-      Surface surface = extract_(settings, stop);
+      Surface surface = extract_(settings, std::move(memory), stop);
       const std::scoped_lock lock(mutex_);
       ready_ = std::move(surface);
       busy_ = false;

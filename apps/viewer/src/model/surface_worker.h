@@ -15,7 +15,7 @@ namespace isolux::viewer {
 /// that arrive while a surface is made replace each other.
 class SurfaceWorker {
  public:
-  using Extract = std::function<Surface(const ExtractSettings& settings, std::stop_token stop)>;
+  using Extract = std::function<Surface(const ExtractSettings& settings, IndexedMesh memory, std::stop_token stop)>;
 
   /// `on_ready` is called on the worker's thread after each surface.
   SurfaceWorker(Extract extract, std::function<void()> on_ready);
@@ -25,6 +25,8 @@ class SurfaceWorker {
   ~SurfaceWorker() = default;
 
   void request(const ExtractSettings& settings);
+  /// A mesh that is no longer needed: its memory serves for the next surface.
+  void recycle(IndexedMesh mesh);
   /// The newest surface that was not taken yet.
   [[nodiscard]] std::optional<Surface> take();
   /// Nothing is asked for, under way or ready to be taken.
@@ -39,6 +41,7 @@ class SurfaceWorker {
   std::condition_variable_any wake_;
   std::optional<ExtractSettings> wanted_;
   std::optional<Surface> ready_;
+  IndexedMesh spare_;
   bool busy_ = false;
   std::jthread thread_;  ///< last: it ends before what it uses
 };

@@ -99,6 +99,10 @@ void fill_bound_texture(const IlluminationGrid& light, const GlTexel& texel, dou
   for (const GLenum filter : {GL_TEXTURE_MIN_FILTER, GL_TEXTURE_MAG_FILTER})
     glTexParameteri(GL_TEXTURE_3D, filter, GL_LINEAR);
   glTexParameteri(GL_TEXTURE_3D, GL_TEXTURE_MAX_LEVEL, 0);
+  if (light.channels == 1) {
+    for (const GLenum channel : {GL_TEXTURE_SWIZZLE_G, GL_TEXTURE_SWIZZLE_B})
+      glTexParameteri(GL_TEXTURE_3D, channel, GL_RED);
+  }
   const UnpackState tightly_packed;
   glTexImage3D(GL_TEXTURE_3D, 0, texel.internal_format, n.x, n.y, n.z, 0, channels, GL_FLOAT, values);
   const GLenum error = glGetError();

@@ -21,7 +21,7 @@ class Texture3D {
   /// 0 for none.
   [[nodiscard]] unsigned int name() const { return name_; }
   [[nodiscard]] Index3 size() const { return size_; }
-  /// 1 (the shader reads r) or 3.
+  /// 1 or 3; a shader reads red, green and blue of both, grey three times.
   [[nodiscard]] int channels() const { return channels_; }
   /// Texture coordinate = scale * place + offset, see TextureMapping.
   [[nodiscard]] Vec3 scale() const { return mapping_.scale; }

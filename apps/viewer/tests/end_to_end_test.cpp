@@ -1,0 +1,136 @@
+// The program itself under Xvfb, a display in memory; skipped where there is none.
+#include <gtest/gtest.h>
+#include <isolux/bake/light_metadata.h>
+#include <isolux/volume_io/light_file.h>
+#include <isolux/volume_io/read.h>
+#include <stb_image.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <set>
+#include <sstream>
+#include <string>
+#include <vector>
+
+namespace isolux::viewer {
+namespace {
+
+namespace fs = std::filesystem;
+
+class IsoluxView : public testing::Test {
+ protected:
+  void SetUp() override {
+    folder_ = fs::temp_directory_path() / ("isolux-view-test-" + std::to_string(getpid()));
+    fs::create_directories(folder_);
+  }
+  void TearDown() override { fs::remove_all(folder_); }
+
+  [[nodiscard]] static bool has_xvfb() {
+    return std::system("command -v xvfb-run >/dev/null && command -v xauth >/dev/null") == 0;
+  }
+  [[nodiscard]] std::string path(const std::string& name) const { return (folder_ / name).string(); }
+
+  /// Exit status; what it says on stderr is in said().
+  int run(const std::string& before, const std::string& arguments) const {
+    const std::string command =
+        before + " '" + ISOLUX_VIEW + "' " + arguments + " >" + path("out") + " 2>" + path("err");
+    const int status = std::system(command.c_str());
+    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+  }
+  int run_with_display(const std::string& arguments) const {
+    return run("timeout 120 xvfb-run -a -e /dev/null -s '-screen 0 640x480x24'", arguments);
+  }
+  [[nodiscard]] std::string said() const {
+    std::ifstream file(path("err"));
+    std::ostringstream text;
+    text << file.rdbuf();
+    return text.str();
+  }
+
+  struct Picture {
+    int width = 0;
+    int height = 0;
+    std::vector<unsigned char> rgb;
+  };
+  [[nodiscard]] Picture picture(const std::string& name) const {
+    Picture result;
+    unsigned char* pixels = stbi_load(path(name).c_str(), &result.width, &result.height, nullptr, 3);
+    if (pixels == nullptr) return result;
+    result.rgb.assign(pixels, pixels + std::size_t(result.width) * std::size_t(result.height) * 3);
+    stbi_image_free(pixels);
+    return result;
+  }
+
+  fs::path folder_;
+};
+
+TEST_F(IsoluxView, SaysInOneLineThatThereIsNoDisplay) {
+  EXPECT_EQ(run("env -u DISPLAY -u WAYLAND_DISPLAY", "gen:sphere:8"), 1);
+  const std::string words = said();
+  EXPECT_EQ(words.rfind("isolux: error: view: no display", 0), 0u) << words;
+  EXPECT_EQ(std::count(words.begin(), words.end(), '\n'), 1) << words;
+}
+
+TEST_F(IsoluxView, RefusesAWrongCommandLineBeforeItLooksForADisplay) {
+  for (const char* arguments : {"--no-such-option", "--size 10", "--view 1", "--mode global", "--frames 0"}) {
+    EXPECT_EQ(run("env -u DISPLAY", arguments), 2) << arguments;
+    EXPECT_EQ(said().rfind("isolux: error: view: ", 0), 0u) << said();
+  }
+}
+
+TEST_F(IsoluxView, DrawsLocalAndGlobalLightAndLeaves) {
+  if (!has_xvfb()) GTEST_SKIP() << "xvfb-run or xauth is not installed";
+  const Volume volume = read_volume("gen:sphere:24");
+  LightFile light;
+  light.grid = IlluminationGrid(cell_lattice(volume.lattice()), 1);
+  for (std::size_t i = 0; i < light.grid.values.size(); ++i) light.grid.values[i] = (i / 23) % 23 < 12 ? 0.1f : 0.9f;
+  light.metadata["isolux.volume_sha256"] = volume_sha256(volume);
+  write_light(light, path("light.nrrd"), volume.space);
+  for (const char* mode : {"local", "global", "both"}) {
+    const std::string picture_path = path(std::string(mode) + ".png");
+    ASSERT_EQ(run_with_display("gen:sphere:24 --iso -0.4 --size 320x200 --frames 3 --light " + path("light.nrrd") +
+                               " --mode " + mode + " --screenshot " + picture_path),
+              0)
+        << said();
+    EXPECT_EQ(said(), "");
+  }
+  const Picture local = picture("local.png");
+  const Picture global = picture("global.png");
+  ASSERT_EQ(local.width, 320);
+  ASSERT_EQ(local.height, 200);
+  EXPECT_GT(std::set<unsigned char>(local.rgb.begin(), local.rgb.end()).size(), 30u) << "a shaded ball has many greys";
+  std::size_t differing = 0;
+  for (std::size_t i = 0; i < local.rgb.size(); ++i) {
+    if (std::abs(int(local.rgb[i]) - int(global.rgb[i])) > 10) ++differing;
+  }
+  EXPECT_GT(differing, local.rgb.size() / 20);
+  const Picture both = picture("both.png");
+  ASSERT_EQ(both.rgb.size(), local.rgb.size());
+  EXPECT_NE(both.rgb, local.rgb);
+  EXPECT_NE(both.rgb, global.rgb);
+}
+
+TEST_F(IsoluxView, ShowsATestFieldWithoutAVolume) {
+  if (!has_xvfb()) GTEST_SKIP() << "xvfb-run or xauth is not installed";
+  EXPECT_EQ(run_with_display("--size 200x150 --frames 1 --screenshot " + path("field.png")), 0) << said();
+  EXPECT_EQ(picture("field.png").width, 200);
+}
+
+TEST_F(IsoluxView, RefusesAMissingVolumeAndTheLightOfAnother) {
+  if (!has_xvfb()) GTEST_SKIP() << "xvfb-run or xauth is not installed";
+  EXPECT_EQ(run_with_display(path("missing.nrrd") + " --frames 1"), 1);
+  EXPECT_NE(said().find("missing.nrrd"), std::string::npos) << said();
+  LightFile light;
+  light.grid = IlluminationGrid(cell_lattice(read_volume("gen:sphere:8").lattice()), 1);
+  light.metadata["isolux.volume_sha256"] = std::string(64, '0');
+  write_light(light, path("light.nrrd"), "left-posterior-superior");
+  EXPECT_EQ(run_with_display("gen:sphere:8 --frames 1 --light " + path("light.nrrd")), 1);
+  EXPECT_EQ(run_with_display("gen:sphere:8 --frames 1 --force --light " + path("light.nrrd")), 0) << said();
+}
+
+}  // namespace
+}  // namespace isolux::viewer

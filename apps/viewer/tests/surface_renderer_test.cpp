@@ -1,0 +1,171 @@
+#include "gl/surface_renderer.h"
+
+#include <gtest/gtest.h>
+#include <isolux/core/random.h>
+#include <isolux/render/image.h>
+#include <isolux/volume_io/read.h>
+
+#include <array>
+#include <cmath>
+#include <cstdlib>
+#include <glm/geometric.hpp>
+#include <glm/mat4x4.hpp>
+#include <glm/matrix.hpp>
+#include <glm/vec4.hpp>
+
+#include "camera/framing.h"
+#include "egl_context.h"
+#include "model/surface.h"
+
+namespace isolux::viewer {
+namespace {
+
+constexpr int kSize = 200;
+
+/// A framebuffer of 8-bit colours and float depth.
+class Target {
+ public:
+  Target() {
+    glGenFramebuffers(1, &framebuffer_);
+    glGenRenderbuffers(2, buffers_);
+    glBindFramebuffer(GL_FRAMEBUFFER, framebuffer_);
+    const std::array<std::pair<GLenum, GLenum>, 2> parts{
+        {{GL_RGBA8, GL_COLOR_ATTACHMENT0}, {GL_DEPTH_COMPONENT32F, GL_DEPTH_ATTACHMENT}}};
+    for (std::size_t i = 0; i < 2; ++i) {
+      glBindRenderbuffer(GL_RENDERBUFFER, buffers_[i]);
+      glRenderbufferStorage(GL_RENDERBUFFER, parts[i].first, kSize, kSize);
+      glFramebufferRenderbuffer(GL_FRAMEBUFFER, parts[i].second, GL_RENDERBUFFER, buffers_[i]);
+    }
+    glViewport(0, 0, kSize, kSize);
+    glClearColor(0.0f, 0.0f, 0.0f, 0.0f);
+    glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
+  }
+  Target(const Target&) = delete;
+  Target& operator=(const Target&) = delete;
+  ~Target() {
+    glDeleteRenderbuffers(2, buffers_);
+    glDeleteFramebuffers(1, &framebuffer_);
+  }
+
+  void read() {
+    glReadPixels(0, 0, kSize, kSize, GL_RGBA, GL_UNSIGNED_BYTE, colours.data());
+    glReadPixels(0, 0, kSize, kSize, GL_DEPTH_COMPONENT, GL_FLOAT, depths.data());
+  }
+
+  std::vector<std::array<std::uint8_t, 4>> colours{std::size_t(kSize) * kSize};
+  std::vector<float> depths = std::vector<float>(std::size_t(kSize) * kSize);
+
+ private:
+  GLuint framebuffer_ = 0;
+  GLuint buffers_[2]{};
+};
+
+/// A ball far from the world's origin, stretched and turned, so that a wrong frame shows.
+Volume far_ball() {
+  Volume volume = read_volume("gen:sphere:32");
+  Lattice lattice = volume.lattice();
+  lattice.frame = {.origin = {4000.0, -700.0, 90.0}, .axes = Mat3({0.6, 0.8, 0.0}, {-1.6, 1.2, 0.0}, {0.0, 0.0, 3.0})};
+  volume.values =
+      Grid<float>(lattice, std::vector<float>(volume.values.values().begin(), volume.values.values().end()));
+  return volume;
+}
+
+IlluminationGrid varied_light(const Lattice& texels, int channels) {
+  IlluminationGrid light(texels, channels);
+  std::size_t at = 0;
+  for (int k = 0; k < texels.size.z; ++k)
+    for (int j = 0; j < texels.size.y; ++j)
+      for (int i = 0; i < texels.size.x; ++i)
+        for (int c = 0; c < channels; ++c)
+          light.values[at++] = 0.5f + 0.4f * float(std::sin(0.5 * i + c) * std::cos(0.4 * j) * std::sin(0.3 * k + c));
+  return light;
+}
+
+class LitPixels : public testing::TestWithParam<std::pair<bool, int>> {};
+
+// What the graphics card shows at a pixel is the light that the processor looks up at the point under it.
+TEST_P(LitPixels, AgreeWithTheLookUpOnTheProcessor) {
+  const test::EglContext context;
+  if (!context) GTEST_SKIP() << context.why();
+  const auto [at_voxels, channels] = GetParam();
+  const auto volume = std::make_shared<const Volume>(far_ball());
+  const Lattice& lattice = volume->lattice();
+  const IlluminationGrid light =
+      varied_light(at_voxels ? voxel_lattice(lattice) : cell_lattice(lattice, {17, 31, 9}), channels);
+  const Surface surface = SurfaceMaker(volume, extractors(), {}).make({.isovalue = -0.4f}, {}, {});
+
+  SurfaceRenderer renderer(lattice);
+  renderer.set_surface(surface.mesh);
+  renderer.set_light(light);
+  SurfaceView view;
+  view.camera = orbit_camera(lattice, 30.0, 20.0, 1.0);
+  view.lighting = Lighting::kGlobal;
+  view.albedo = {0.9f, 0.8f, 0.6f};
+  view.exposure = 1.1f;
+  Target target;
+  renderer.draw(view);
+  target.read();
+
+  const Vec3 centre(Vec3f(box_middle(lattice)));
+  const glm::dmat4 from_clip = glm::inverse(clip_from_centred(view.camera, centre, box_radius(lattice), 1.0));
+  int compared = 0;
+  for (int y = 0; y < kSize; ++y) {
+    for (int x = 0; x < kSize; ++x) {
+      const std::size_t at = std::size_t(y) * kSize + std::size_t(x);
+      if (target.colours[at][3] == 0) continue;
+      const glm::dvec4 clip(2.0 * (x + 0.5) / kSize - 1.0, 2.0 * (y + 0.5) / kSize - 1.0,
+                            2.0 * double(target.depths[at]) - 1.0, 1.0);
+      const glm::dvec4 centred = from_clip * clip;
+      const Vec3 world = centre + Vec3(centred) / centred.w;
+      const Vec3f shown = view.exposure * view.albedo * light.at_world(world);
+      for (int c = 0; c < 3; ++c) {
+        // One code for the texture's float16 and 8-bit filter weights, one for rounding.
+        ASSERT_LE(std::abs(int(target.colours[at][std::size_t(c)]) - int(srgb_code(shown[c]))), 2)
+            << "pixel " << x << "," << y << " channel " << c;
+      }
+      ++compared;
+    }
+  }
+  EXPECT_GT(compared, kSize * kSize / 20);
+}
+
+INSTANTIATE_TEST_SUITE_P(BothLattices, LitPixels,
+                         testing::Values(std::pair(false, 1), std::pair(false, 3), std::pair(true, 1),
+                                         std::pair(true, 3)),
+                         [](const auto& tested) {
+                           return std::string(tested.param.first ? "voxels_" : "cells_") +
+                                  std::to_string(tested.param.second);
+                         });
+
+TEST(SurfaceRenderer, ShowsTheHeadlightAndTheSkyWithoutLight) {
+  const test::EglContext context;
+  if (!context) GTEST_SKIP() << context.why();
+  const auto volume = std::make_shared<const Volume>(read_volume("gen:sphere:32"));
+  const Lattice& lattice = volume->lattice();
+  SurfaceRenderer renderer(lattice);
+  renderer.set_surface(SurfaceMaker(volume, extractors(), {}).make({.isovalue = -0.4f}, {}, {}).mesh);
+  SurfaceView view;
+  view.camera = orbit_camera(lattice, 0.0, 0.0, 1.0);
+  Target target;
+  renderer.draw(view);
+  target.read();
+  // In the middle the ball faces the camera: .7 of headlight and .15 of a sky that is half in view.
+  const auto& middle = target.colours[std::size_t(kSize / 2) * kSize + kSize / 2];
+  EXPECT_NEAR(middle[0], srgb_code(0.8f * 0.85f), 2) << "the smoothed normal of a mesh of 32 cells";
+  const auto brightness = [&](int y) { return int(target.colours[std::size_t(y) * kSize + kSize / 2][0]); };
+  EXPECT_GT(brightness(kSize / 2 + 30), brightness(kSize / 2 - 30)) << "the sky is above";
+}
+
+TEST(SurfaceRenderer, DrawsNothingWhereThereIsNothing) {
+  const test::EglContext context;
+  if (!context) GTEST_SKIP() << context.why();
+  const SurfaceRenderer renderer(read_volume("gen:sphere:4").lattice());
+  Target target;
+  renderer.draw({});
+  target.read();
+  for (const auto& colour : target.colours) ASSERT_EQ(colour[3], 0);
+  EXPECT_EQ(glGetError(), GLenum(GL_NO_ERROR));
+}
+
+}  // namespace
+}  // namespace isolux::viewer
