@@ -160,7 +160,7 @@ TEST(BakeWorker, HandsOverTheLightOrTheReason) {
   }
 }
 
-TEST(Draft, HasAtMostAMillionTexelsInTheVolumesProportions) {
+TEST(Draft, HasAtMostSoManyTexelsInTheVolumesProportions) {
   EXPECT_EQ(draft_texels({65, 33, 17}, 1e6), Index3(64, 32, 16)) << "one a cell where they are few";
   const Index3 large = draft_texels({513, 513, 257}, 1e6);
   EXPECT_LE(double(large.x) * large.y * large.z, 1e6);

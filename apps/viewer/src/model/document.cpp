@@ -33,7 +33,7 @@ Index3 draft_texels(Index3 volume_size, double most) {
 LightFile bake_draft(const Volume& volume, const Stages& stages, const Run& run) {
   BakeSettings settings;
   settings.trace.rays = 16;
-  settings.texels = draft_texels(volume.lattice().size, 1e6);
+  settings.texels = draft_texels(volume.lattice().size, 3e5);
   const Scene scene;
   return make_light_file(bake(volume, scene, settings, stages, run), volume, scene, settings, run);
 }

@@ -24,7 +24,7 @@ struct Document {
 /// The albedo that the light's scene gives this isovalue; 0.8 without a light.
 [[nodiscard]] Vec3f albedo_of(const Document& document, float isovalue);
 
-/// A light that is soon there: few rays, and at most about a million texels. \throw as bake()
+/// A light that is soon there: few rays, and at most 300,000 texels. \throw as bake()
 [[nodiscard]] LightFile bake_draft(const Volume& volume, const Stages& stages, const Run& run);
 
 /// Texels of a draft: one a cell, fewer by the same factor on each axis where that would be more than `most`.
