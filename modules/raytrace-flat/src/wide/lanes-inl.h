@@ -17,6 +17,15 @@ namespace isolux::wide {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
+// Vectors in arrays stay in registers only where the loops over them are unrolled.
+#if defined(__clang__)
+#define ISOLUX_UNROLL _Pragma("clang loop unroll(full)")
+#elif defined(__GNUC__)
+#define ISOLUX_UNROLL _Pragma("GCC unroll 8")
+#else
+#define ISOLUX_UNROLL
+#endif
+
 using FloatTag = hn::ScalableTag<float>;
 using IntTag = hn::RebindToSigned<FloatTag>;
 using Floats = hn::Vec<FloatTag>;

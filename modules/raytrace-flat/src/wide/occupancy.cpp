@@ -164,6 +164,12 @@ void Occupancy::build_distances() {
     widen_planes(near_, row * std::size_t(bricks_.y), near_.size(), widened_);
     near_.swap(widened_);
   }
+  for (std::size_t b = 0; b < nx * rows; ++b) {
+    for (std::uint32_t* word : {&words_[2 * b], &words_[2 * b + 1]}) {
+      if (*word != 0) *word |= 1u << 31;
+      if (distance_[b] > 0) *word = distance_[b];
+    }
+  }
 }
 
 }  // namespace isolux::wide

@@ -41,7 +41,7 @@ class Occupancy {
   /// For isovalues of the threshold `index` and above. Cost: one compare a cell byte; the distances are bit operations.
   void build(const CellCodes& codes, int index, const Run& run);
   /// \pre built
-  [[nodiscard]] OccupancyView view() const { return {words_.data(), distance_.data(), bricks_}; }
+  [[nodiscard]] OccupancyView view() const { return {words_.data(), bricks_}; }
 
  private:
   void build_distances();

@@ -48,10 +48,12 @@ struct FieldView {
   OuterSide outer = OuterSide::kLower;
 };
 
-/// Where the level sets of a range of isovalues may be: see occupancy.h.
+/// Where the level sets of a range of isovalues may be: two words a brick of 4^3 cells, the halves z < 2 and z >= 2.
+/// Positive: no cell of this brick is occupied, nor of those nearer than so many bricks (chessboard distance). Zero:
+/// none of this half. Negative: bit x + 4 y + 16 z of a cell is set where it is occupied; the sign bit stands for the
+/// last cell, which is taken for occupied.
 struct OccupancyView {
-  const std::uint32_t* words = nullptr;    ///< two a brick, bit x + 4 y + 16 z within the half of z < 2 and z >= 2
-  const std::uint8_t* distance = nullptr;  ///< chessboard distance over bricks to one with a bit set
+  const std::uint32_t* words = nullptr;
   Index3 bricks{0};
 };
 

@@ -84,48 +84,58 @@ void start(const CellReader& cells, Rays& rays, std::size_t begin, std::size_t e
 
 /// Finds how far a ray may leap from where it stands.
 struct Guide {
-  const std::uint32_t* words;
-  const std::int32_t* distance;
+  const std::int32_t* words;
   Ints bricks_x;
   Ints bricks_xy;
   Ints last_cell[3];
 
   Guide(const OccupancyView& occupancy, const CellReader& cells)
-      : words(occupancy.words),
-        distance(reinterpret_cast<const std::int32_t*>(occupancy.distance)),
+      : words(reinterpret_cast<const std::int32_t*>(occupancy.words)),
         bricks_x(hn::Set(kI, occupancy.bricks.x)),
         bricks_xy(hn::Set(kI, occupancy.bricks.x * occupancy.bricks.y)) {
     for (int a = 0; a < 3; ++a) last_cell[a] = cells.last_cell[a];
   }
 
+  /// What is known of the half brick in which a ray stands, and the bit of its cell there.
+  struct Sight {
+    Ints word;
+    Ints bit;
+  };
+
+  [[nodiscard]] HWY_INLINE Sight look(const Lanes& r, Mask moving) const {
+    const auto there = hn::RebindMask(kI, moving);
+    Ints x[3];
+    for (int a = 0; a < 3; ++a) x[a] = hn::IfThenElseZero(there, hn::Xor(r.cell[a], r.mirror[a]));
+    const Ints row = hn::Add(hn::Mul(hn::ShiftRight<2>(x[2]), bricks_xy), hn::Mul(hn::ShiftRight<2>(x[1]), bricks_x));
+    const Ints brick = hn::Add(row, hn::ShiftRight<2>(x[0]));
+    const Ints half = hn::And(hn::ShiftRight<1>(x[2]), hn::Set(kI, 1));
+    const Ints three = hn::Set(kI, 3);
+    Sight sight;
+    sight.word = hn::GatherIndex(kI, words, hn::Add(hn::Add(brick, brick), half));
+    sight.bit = hn::Or(hn::ShiftLeft<4>(hn::And(x[2], hn::Set(kI, 1))),
+                       hn::Or(hn::ShiftLeft<2>(hn::And(x[1], three)), hn::And(x[0], three)));
+    return sight;
+  }
+
   /// Moves the lanes of `moving` to the end of the empty box around them: bricks within the distance, else the eighth
   /// of a brick, else the cell. Returns the lanes that stand in an occupied cell instead; those that left the volume
   /// are taken from `moving` too.
-  [[nodiscard]] HWY_INLINE Mask step(Lanes& r, Mask& moving) const {
-    const auto moving_int = hn::RebindMask(kI, moving);
-    Ints x[3];
-    for (int a = 0; a < 3; ++a) x[a] = hn::IfThenElseZero(moving_int, hn::Xor(r.cell[a], r.mirror[a]));
-    const Ints brick =
-        hn::Add(hn::Add(hn::Mul(hn::ShiftRight<2>(x[2]), bricks_xy), hn::Mul(hn::ShiftRight<2>(x[1]), bricks_x)),
-                hn::ShiftRight<2>(x[0]));
-    const Ints distance_here = hn::And(hn::GatherOffset(kI, distance, brick), hn::Set(kI, 255));
-    const Ints two = hn::Set(kI, 2);
-    const Ints three = hn::Set(kI, 3);
-    const Ints half = hn::Add(hn::Add(brick, brick), hn::ShiftRight<1>(hn::And(x[2], two)));
-    const Ints word = hn::GatherIndex(kI, reinterpret_cast<const std::int32_t*>(words), half);
-    const Ints bit = hn::Or(hn::ShiftLeft<4>(hn::And(x[2], hn::Set(kI, 1))),
-                            hn::Or(hn::ShiftLeft<2>(hn::And(x[1], three)), hn::And(x[0], three)));
+  [[nodiscard]] HWY_INLINE Mask move(Lanes& r, const Sight& sight, Mask& moving) const {
     const hn::RebindToUnsigned<IntTag> u;
-    const auto bits = hn::BitCast(u, word);
-    const auto occupied = hn::TestBit(hn::BitCast(kI, hn::Shr(bits, hn::BitCast(u, bit))), hn::Set(kI, 1));
-    // The eighth: 2 x 2 x 2 cells whose bits are 0, 1, 4, 5, 16, 17, 20, 21 above its first.
-    const auto eighth = hn::Shr(bits, hn::BitCast(u, hn::And(bit, hn::Set(kI, 0xA))));
-    const auto empty_eighth = hn::Eq(hn::And(hn::BitCast(kI, eighth), hn::Set(kI, 0x00330033)), hn::Zero(kI));
-    const auto in_empty_brick = hn::Gt(distance_here, hn::Zero(kI));
+    const Ints zero = hn::Zero(kI);
     const Ints one = hn::Set(kI, 1);
-    const Ints low_bits = hn::IfThenElse(in_empty_brick, three, hn::IfThenElseZero(empty_eighth, one));
+    const Ints two = hn::Set(kI, 2);
+    const auto bits = hn::BitCast(u, sight.word);
+    const Ints here = hn::BitCast(kI, hn::Shr(bits, hn::BitCast(u, sight.bit)));
+    const auto occupied = hn::And(hn::Lt(sight.word, zero), hn::TestBit(here, one));
+    // The eighth: 2 x 2 x 2 cells whose bits are 0, 1, 4, 5, 16, 17, 20, 21 above its first.
+    const Ints first = hn::And(sight.bit, hn::Set(kI, 0xA));
+    const Ints eighth = hn::And(hn::BitCast(kI, hn::Shr(bits, hn::BitCast(u, first))), hn::Set(kI, 0x00330033));
+    const auto empty_eighth = hn::Eq(eighth, zero);
+    const auto empty_brick = hn::Gt(sight.word, zero);
+    const Ints low_bits = hn::IfThenElse(empty_brick, hn::Set(kI, 3), hn::IfThenElseZero(empty_eighth, one));
     const Ints reach =
-        hn::IfThenElse(in_empty_brick, hn::ShiftLeft<2>(distance_here), hn::IfThenElse(empty_eighth, two, one));
+        hn::IfThenElse(empty_brick, hn::ShiftLeft<2>(sight.word), hn::IfThenElse(empty_eighth, two, one));
     Ints plane[3];
     for (int a = 0; a < 3; ++a) plane[a] = hn::Add(hn::AndNot(low_bits, r.cell[a]), reach);
     const Exit exit = leave(r, plane);
@@ -139,24 +149,42 @@ struct Guide {
   }
 };
 
-/// Second stage, one pass over the queue: a few steps for each vector of rays, without branches; rays that reach an
-/// occupied cell go to `waiting`, those that leave the volume are done, the rest is packed again.
+/// Second stage, one pass over the queue: a few steps for each pair of vectors of rays, without branches; rays that
+/// reach an occupied cell go to `waiting`, those that leave the volume are done, the rest is packed again.
 void travel(const Guide& guide, RayQueue& travelling, RayQueue& waiting, TraceCounters& counters) {
   constexpr int kSteps = 2;
+  constexpr std::size_t kVectors = 2;  // while one waits for memory the other moves
+  const std::size_t lanes = hn::Lanes(kF);
   const std::size_t count = travelling.count;
   travelling.count = 0;
-  for (std::size_t at = 0; at < count; at += hn::Lanes(kF)) {
-    Lanes r = load_lanes(travelling, at);
-    Mask moving = hn::FirstN(kF, count - at);
-    Mask stopped = hn::FirstN(kF, 0);
-    for (int step = 0; step < kSteps; ++step) {
-      counters.macrocells += hn::CountTrue(kF, moving);
-      stopped = hn::Or(stopped, guide.step(r, moving));
-      // Whoever has leapt over an empty cell has left its level set.
-      if (step == 0) mark(r, hn::And(stopped, still_on_it(r)));
+  for (std::size_t at = 0; at < count; at += kVectors * lanes) {
+    Lanes r[kVectors];
+    Mask moving[kVectors];
+    Mask stopped[kVectors];
+    ISOLUX_UNROLL
+    for (std::size_t v = 0; v < kVectors; ++v) {
+      r[v] = load_lanes(travelling, at + v * lanes);
+      moving[v] = hn::FirstN(kF, count - HWY_MIN(count, at + v * lanes));
+      stopped[v] = hn::FirstN(kF, 0);
     }
-    append_lanes(waiting, r, stopped);
-    append_lanes(travelling, r, moving);
+    ISOLUX_UNROLL
+    for (int step = 0; step < kSteps; ++step) {
+      Guide::Sight sight[kVectors];
+      ISOLUX_UNROLL
+      for (std::size_t v = 0; v < kVectors; ++v) sight[v] = guide.look(r[v], moving[v]);
+      ISOLUX_UNROLL
+      for (std::size_t v = 0; v < kVectors; ++v) {
+        counters.macrocells += hn::CountTrue(kF, moving[v]);
+        stopped[v] = hn::Or(stopped[v], guide.move(r[v], sight[v], moving[v]));
+        // Whoever has leapt over an empty cell has left its level set.
+        if (step == 0) mark(r[v], hn::And(stopped[v], still_on_it(r[v])));
+      }
+    }
+    ISOLUX_UNROLL
+    for (std::size_t v = 0; v < kVectors; ++v) {
+      append_lanes(waiting, r[v], stopped[v]);
+      append_lanes(travelling, r[v], moving[v]);
+    }
   }
 }
 
