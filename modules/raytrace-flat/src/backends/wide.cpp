@@ -1,14 +1,13 @@
 #include <fmt/format.h>
 #include <isolux/core/error.h>
-#include <isolux/core/random.h>
 #include <isolux/raytrace_flat/flat_tracer.h>
 
-#include <algorithm>
 #include <mutex>
 #include <utility>
 #include <vector>
 
 #include "trace_counters.h"
+#include "wide/net_mean.h"
 #include "wide/path_waves.h"
 #include "wide/site_blocks.h"
 
@@ -38,17 +37,24 @@ class WideTracer final : public FlatTracer {
     TraceResult result;
     SampleSet& samples = result.samples;
     samples.sites = std::move(sites);
-    samples.channels = is_grey(scene) ? 1 : 3;
-    samples.radiance.resize(samples.size() * std::size_t(samples.channels));
-    samples.variance.resize(samples.size());
     light(volume, scene, settings, run, samples, result.counters);
-    calibrate_variance(volume, scene, settings, run, samples, result.counters);
+    SampleSet again;
+    const std::vector<std::size_t> probes = wide::choose_probes(samples.sites);
+    again.sites = wide::sites_of(samples.sites, probes);
+    Run other = run;
+    other.seed = wide::probe_seed(run.seed);
+    other.progress = {};
+    light(volume, scene, settings, other, again, result.counters);
+    wide::calibrate_variance(samples, probes, again);
     return result;
   }
 
  private:
   void light(const Volume& volume, const Scene& scene, const TraceSettings& settings, const Run& run,
              SampleSet& samples, TraceCounters& counters) const {
+    samples.channels = is_grey(scene) ? 1 : 3;
+    samples.radiance.resize(samples.size() * std::size_t(samples.channels));
+    samples.variance.resize(samples.size());
     const wide::PathWaves waves(volume, scene, settings, options_.limits, run.seed);
     const wide::BlockRequest request{.outer = scene.outer,
                                      .rays_per_site = waves.aimer().rays(),
@@ -60,45 +66,6 @@ class WideTracer final : public FlatTracer {
       const std::scoped_lock lock(adding);
       add(counters, part);
     });
-  }
-
-  // The differences of neighbouring strata say where the variance is, but too much of it: they take the light to be
-  // independent where the net makes its errors cancel. How much too much is measured: some sites are lit again with
-  // other random numbers, and the differences of the two results are what the variances of those sites must add up to.
-  void calibrate_variance(const Volume& volume, const Scene& scene, const TraceSettings& settings, const Run& run,
-                          SampleSet& samples, TraceCounters& counters) const {
-    constexpr std::size_t kEnough = 512;  // leaves some 5 % of doubt about the factor
-    constexpr std::size_t kOneOf = 64;
-    const std::size_t step = std::max<std::size_t>(1, std::min(kOneOf, samples.size() / kEnough));
-    SampleSet again;
-    again.channels = samples.channels;
-    std::vector<std::size_t> numbers;
-    for (std::size_t i = 0; i < samples.size(); i += step) {
-      if (samples.sites.normals[i] == Vec3f(0.0f)) continue;
-      numbers.push_back(i);
-      again.sites.positions.push_back(samples.sites.positions[i]);
-      again.sites.isovalues.push_back(samples.sites.isovalues[i]);
-      again.sites.normals.push_back(samples.sites.normals[i]);
-    }
-    const auto channels = std::size_t(samples.channels);
-    again.radiance.resize(again.size() * channels);
-    again.variance.resize(again.size());
-    Run other = run;
-    other.seed = mix_bits(run.seed ^ 0xC0FFEEull);
-    other.progress = {};
-    light(volume, scene, settings, other, again, counters);
-    double expected = 0.0;
-    double found = 0.0;
-    for (std::size_t k = 0; k < numbers.size(); ++k) {
-      expected += double(samples.variance[numbers[k]]);
-      for (std::size_t c = 0; c < channels; ++c) {
-        const double d = double(samples.radiance[numbers[k] * channels + c]) - double(again.radiance[k * channels + c]);
-        found += 0.5 * d * d / double(channels);
-      }
-    }
-    if (settings.rays < 2 || !(expected > 0.0)) return;
-    for (std::size_t i = 0; i < samples.size(); ++i)
-      if (samples.sites.normals[i] != Vec3f(0.0f)) samples.variance[i] *= float(found / expected);
   }
 
   static void require_usable(const Sites& sites, const TraceSettings& settings) {

@@ -4,7 +4,6 @@
 #include <glm/geometric.hpp>
 #include <limits>
 #include <numbers>
-#include <numeric>
 
 #include "directions.h"
 
@@ -12,21 +11,6 @@ namespace isolux::wide {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
-/// Indices of the points along a curve of Morton's: neighbours in it share the small squares of the net, and still do
-/// after a digital shift.
-std::vector<std::uint32_t> neighbour_order(const SobolPoints& points, std::size_t count) {
-  const auto place = [&](std::uint32_t i) {
-    std::uint64_t key = 0;
-    for (int bit = 31; bit >= 0; --bit)
-      key = key << 2 | std::uint64_t(points.u[i] >> bit & 1) << 1 | (points.v[i] >> bit & 1);
-    return key;
-  };
-  std::vector<std::uint32_t> order(count);
-  std::iota(order.begin(), order.end(), 0u);
-  std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) { return place(a) < place(b); });
-  return order;
-}
 
 /// Writes a ray of a batch.
 void put_ray(Rays& rays, const Vec3f& origin, float isovalue, const Vec3& towards, const ToIndex& to_index) {
@@ -69,7 +53,7 @@ PathWaves::PathWaves(const Volume& volume, const Scene& scene, const TraceSettin
       environment_(scene.environment),
       lights_(scene.lights.begin(), scene.lights.end()),
       aimer_(volume.lattice().frame, seed, std::size_t(settings.rays)),
-      neighbours_(neighbour_order(aimer_.points(), std::size_t(settings.rays))) {}
+      mean_(aimer_.points(), std::size_t(settings.rays)) {}
 
 UnitPair PathWaves::numbers(const Wave& wave, const Path& path, std::uint32_t dimension) const {
   const auto rays = std::uint32_t(aimer_.rays());
@@ -84,6 +68,7 @@ void PathWaves::light(const SiteBlock& block, SampleSet& samples, TraceCounters&
   start(block, samples.sites, wave);
   for (wave.depth = 0; !wave.paths.empty(); ++wave.depth) {
     if (!lights_.empty() || environment_.has_samples()) direct_light(block, wave, counters);
+    if (is_dark(wave)) break;
     if (wave.depth > 0) aim(wave);
     const bool none_goes_on = wave.depth == settings_.bounces || wave.depth == limits_.longest_path;
     trace(block.field, block.occupancy, none_goes_on ? Question::kAnyHit : Question::kFirstHit, wave.batch.rays,
@@ -92,7 +77,17 @@ void PathWaves::light(const SiteBlock& block, SampleSet& samples, TraceCounters&
       counters.hits += std::uint64_t(wave.batch.rays.t[i] != kEscaped);
     arrive(block, wave);
   }
-  fold(block, wave, samples);
+  const std::size_t rays = aimer_.rays();
+  for (std::size_t s = 0; s < block.sites.size(); ++s)
+    mean_.put(std::span(wave.value).subspan(s * rays, rays), block.sites[s], samples);
+}
+
+bool PathWaves::is_dark(const Wave& wave) const {
+  if (environment_.shines()) return false;
+  const bool is_last = wave.depth == settings_.bounces || wave.depth == limits_.longest_path;
+  return std::all_of(wave.materials.begin(), wave.materials.end(), [&](const Material& material) {
+    return material.emission == Vec3(0.0) && (is_last || material.is_black);
+  });
 }
 
 void PathWaves::start(const SiteBlock& block, const Sites& sites, Wave& wave) const {
@@ -227,35 +222,6 @@ void PathWaves::look(const SiteBlock& block, Wave& wave, std::vector<Sighting>& 
     if (!blocked) wave.value[wave.paths[sightings[i].path].ray] += sightings[i].light;
   }
   sightings.clear();
-}
-
-void PathWaves::fold(const SiteBlock& block, const Wave& wave, SampleSet& samples) const {
-  const std::size_t rays = aimer_.rays();
-  const auto channels = std::size_t(samples.channels);
-  for (std::size_t s = 0; s < block.sites.size(); ++s) {
-    const std::size_t site = block.sites[s];
-    const bool is_lit = samples.sites.normals[site] != Vec3f(0.0f);
-    Vec3 sum(0.0);
-    Vec3 differences(0.0);
-    const Vec3* values = wave.value.data() + s * rays;
-    for (std::size_t k = 0; k < rays && is_lit; ++k) {
-      const Vec3& here = values[neighbours_[k]];
-      sum += here;
-      if (k == 0) continue;
-      const Vec3 step = here - values[neighbours_[k - 1]];
-      differences += step * step;
-    }
-    double variance = 0.0;
-    for (std::size_t c = 0; c < channels; ++c) {
-      samples.radiance[site * channels + c] = float(sum[int(c)] / double(rays));
-      variance += differences[int(c)];
-    }
-    // Plain variance / n would count the differences between far strata, which the net has removed: what is left shows
-    // between neighbours (successive differences, von Neumann 1941).
-    const auto n = double(rays);
-    variance = is_lit && rays > 1 ? variance / (2.0 * (n - 1.0) * n * double(channels)) : kInfinity;
-    samples.variance[site] = float(std::min(variance, double(std::numeric_limits<float>::max())));
-  }
 }
 
 }  // namespace isolux::wide

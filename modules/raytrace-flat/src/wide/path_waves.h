@@ -11,6 +11,7 @@
 #include "path_sampler.h"
 #include "path_tracer.h"
 #include "wide/aimer.h"
+#include "wide/net_mean.h"
 #include "wide/site_blocks.h"
 
 namespace isolux::wide {
@@ -46,6 +47,8 @@ class PathWaves {
 
   void start(const SiteBlock& block, const Sites& sites, Wave& wave) const;
   void aim(Wave& wave) const;
+  /// True if no ray of this wave can bring light: light sources were asked apart.
+  [[nodiscard]] bool is_dark(const Wave& wave) const;
   void arrive(const SiteBlock& block, Wave& wave) const;
   /// Moves a path to the vertex that its ray has hit; false if it ends there.
   [[nodiscard]] bool go_on(const SiteBlock& block, const Wave& wave, std::size_t ray, Path& path) const;
@@ -55,7 +58,6 @@ class PathWaves {
   void look(const SiteBlock& block, Wave& wave, std::vector<Sighting>& sightings, TraceCounters& counters) const;
   [[nodiscard]] Vec3 escaped_light(const Vec3& normal, const Vec3& towards) const;
   [[nodiscard]] UnitPair numbers(const Wave& wave, const Path& path, std::uint32_t dimension) const;
-  void fold(const SiteBlock& block, const Wave& wave, SampleSet& samples) const;
 
   const Scene& scene_;
   TraceSettings settings_;
@@ -65,7 +67,7 @@ class PathWaves {
   PreparedEnvironment environment_;
   std::vector<PreparedLight> lights_;
   Aimer aimer_;
-  std::vector<std::uint32_t> neighbours_;  ///< the first rays of a site, in an order that keeps strata together
+  NetMean mean_;
 };
 
 }  // namespace isolux::wide

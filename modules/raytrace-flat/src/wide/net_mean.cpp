@@ -1,0 +1,91 @@
+#include "wide/net_mean.h"
+
+#include <isolux/core/random.h>
+
+#include <algorithm>
+#include <limits>
+#include <numeric>
+
+namespace isolux::wide {
+namespace {
+
+/// Place of a point along a curve of Morton's.
+std::uint64_t morton_place(const SobolPoints& points, std::uint32_t i) {
+  std::uint64_t key = 0;
+  for (int bit = 31; bit >= 0; --bit)
+    key = key << 2 | std::uint64_t(points.u[i] >> bit & 1) << 1 | (points.v[i] >> bit & 1);
+  return key;
+}
+
+}  // namespace
+
+NetMean::NetMean(const SobolPoints& points, std::size_t rays) : order_(rays) {
+  // Neighbours on the curve share the small squares of the net, and still do after a digital shift.
+  std::iota(order_.begin(), order_.end(), 0u);
+  std::sort(order_.begin(), order_.end(),
+            [&](std::uint32_t a, std::uint32_t b) { return morton_place(points, a) < morton_place(points, b); });
+}
+
+void NetMean::put(std::span<const Vec3> values, std::size_t site, SampleSet& samples) const {
+  const auto channels = std::size_t(samples.channels);
+  const auto n = double(order_.size());
+  const bool is_lit = samples.sites.normals[site] != Vec3f(0.0f);
+  Vec3 sum(0.0);
+  Vec3 differences(0.0);
+  for (std::size_t k = 0; k < order_.size() && is_lit; ++k) {
+    const Vec3& here = values[order_[k]];
+    sum += here;
+    if (k == 0) continue;
+    const Vec3 step = here - values[order_[k - 1]];
+    differences += step * step;
+  }
+  double variance = 0.0;
+  for (std::size_t c = 0; c < channels; ++c) {
+    samples.radiance[site * channels + c] = float(sum[int(c)] / n);
+    variance += differences[int(c)] / double(channels);
+  }
+  constexpr double kUnknown = std::numeric_limits<float>::max();
+  samples.variance[site] = float(is_lit && n > 1.0 ? std::min(variance / (2.0 * (n - 1.0) * n), kUnknown) : kUnknown);
+}
+
+std::vector<std::size_t> choose_probes(const Sites& sites) {
+  constexpr std::size_t kEnough = 512;  // leaves some 5 % of doubt about the factor
+  constexpr std::size_t kOneOf = 64;
+  const std::size_t step = std::clamp<std::size_t>(sites.size() / kEnough, 1, kOneOf);
+  std::vector<std::size_t> probes;
+  for (std::size_t i = 0; i < sites.size(); i += step)
+    if (sites.normals[i] != Vec3f(0.0f)) probes.push_back(i);
+  return probes;
+}
+
+Sites sites_of(const Sites& sites, std::span<const std::size_t> numbers) {
+  Sites chosen;
+  for (const std::size_t i : numbers) {
+    chosen.positions.push_back(sites.positions[i]);
+    chosen.isovalues.push_back(sites.isovalues[i]);
+    chosen.normals.push_back(sites.normals[i]);
+  }
+  return chosen;
+}
+
+void calibrate_variance(SampleSet& samples, std::span<const std::size_t> probes, const SampleSet& again) {
+  constexpr double kUnknown = std::numeric_limits<float>::max();
+  const auto channels = std::size_t(samples.channels);
+  double expected = 0.0;
+  double found = 0.0;
+  for (std::size_t k = 0; k < probes.size(); ++k) {
+    if (double(samples.variance[probes[k]]) == kUnknown) return;
+    expected += double(samples.variance[probes[k]]);
+    for (std::size_t c = 0; c < channels; ++c) {
+      const double d = double(samples.radiance[probes[k] * channels + c]) - double(again.radiance[k * channels + c]);
+      found += 0.5 * d * d / double(channels);
+    }
+  }
+  if (!(expected > 0.0)) return;
+  for (float& variance : samples.variance)
+    if (double(variance) != kUnknown) variance *= float(found / expected);
+}
+
+std::uint64_t probe_seed(std::uint64_t seed) { return mix_bits(seed ^ 0x9E3779B97F4A7C15ull); }
+
+}  // namespace isolux::wide

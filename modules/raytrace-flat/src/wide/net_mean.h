@@ -1,0 +1,41 @@
+#pragma once
+
+#include <isolux/core/sample_set.h>
+#include <isolux/core/vec.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "wide/hemisphere.h"
+
+namespace isolux::wide {
+
+/// Mean and variance of what the rays of a site bring, the rays being points of a net.
+class NetMean {
+ public:
+  NetMean(const SobolPoints& points, std::size_t rays);
+
+  /// Writes e and its squared standard error for a site, from one value a ray. The variance is that of neighbouring
+  /// strata (successive differences, von Neumann 1941): plain variance / n would count the differences between far
+  /// strata, which the net has removed. Rather too large still: see calibrate_variance.
+  void put(std::span<const Vec3> values, std::size_t site, SampleSet& samples) const;
+
+ private:
+  std::vector<std::uint32_t> order_;  ///< rays along a curve of Morton's
+};
+
+/// The sites with a normal whose light is found twice, to know by how much NetMean's variances are too large: all of
+/// few, one of 64 of many.
+[[nodiscard]] std::vector<std::size_t> choose_probes(const Sites& sites);
+[[nodiscard]] Sites sites_of(const Sites& sites, std::span<const std::size_t> numbers);
+
+/// Scales the variances of `samples` so that on the probes they add up to what the difference of two results with
+/// independent random numbers shows. `again` holds the second results of `probes`.
+void calibrate_variance(SampleSet& samples, std::span<const std::size_t> probes, const SampleSet& again);
+
+/// The seed of the second results.
+[[nodiscard]] std::uint64_t probe_seed(std::uint64_t seed);
+
+}  // namespace isolux::wide

@@ -1,0 +1,157 @@
+// Bounces by iterating on kept hit points, against exact answers and against paths.
+#include <gtest/gtest.h>
+#include <isolux/core/error.h>
+#include <isolux/raytrace_flat/light_links.h>
+
+#include "physics_support.h"
+
+namespace isolux::test {
+namespace {
+
+/// Sites at the centres of a volume's cells; `texel` gets each one's place in the grid.
+Sites cell_sites(const Volume& volume, OuterSide outer, std::vector<std::size_t>& texel) {
+  const Lattice texels = cell_lattice(volume.lattice());
+  const TrilinearField field(volume);
+  Sites sites;
+  for (int k = 0; k < texels.size.z; ++k) {
+    for (int j = 0; j < texels.size.y; ++j) {
+      for (int i = 0; i < texels.size.x; ++i) {
+        const Vec3 p(i + 0.5, j + 0.5, k + 0.5);
+        const Vec3 normal = field.normal(p, outer, GradientKind::kCentralDifferences);
+        if (normal == Vec3(0.0)) continue;
+        sites.positions.emplace_back(p);
+        sites.isovalues.push_back(float(field.value(p)));
+        sites.normals.emplace_back(normal);
+        texel.push_back(texels.offset(i, j, k));
+      }
+    }
+  }
+  return sites;
+}
+
+/// e of the samples at their texels. Texels without a site keep 0: the volumes here have at most one, at a centre.
+LightLinks::ToGrid at_texels(const Volume& volume, const std::vector<std::size_t>& texel) {
+  return [&volume, &texel](const SampleSet& samples) {
+    IlluminationGrid grid(cell_lattice(volume.lattice()), samples.channels);
+    const auto channels = std::size_t(samples.channels);
+    for (std::size_t i = 0; i < samples.size(); ++i)
+      for (std::size_t c = 0; c < channels; ++c)
+        grid.values[texel[i] * channels + c] = samples.radiance[i * channels + c];
+    return grid;
+  };
+}
+
+TEST(LightLinks, MatchTheOpenIntegratingSphere) {
+  const Volume volume = cavity(33);
+  std::vector<std::size_t> texel;
+  const Sites sites = cell_sites(volume, OuterSide::kLower, texel);
+  const LightLinks links(volume, sites, {.rays = 64}, isolux::Run{});
+  const Solution solution = links.solve(furnace(0.8f), {}, at_texels(volume, texel), isolux::Run{});
+  double sum = 0.0;
+  double squares = 0.0;
+  int count = 0;
+  for (std::size_t i = 0; i < sites.size(); ++i) {
+    const auto radius = double(sites.isovalues[i]);
+    if (radius < 0.58 || radius > 0.68) continue;
+    const double open = 3.0 * (1.0 - 0.5 / radius);
+    const double d = double(solution.samples.radiance[i]) - open / (1.0 - 0.8 * (1.0 - open));
+    sum += d;
+    squares += d * d;
+    ++count;
+  }
+  ASSERT_GT(count, 500);
+  // Bias of reading e from texels of 1/32: e changes with the radius, by up to 5 a unit length at the smallest one, and
+  // is averaged over the texels around. Noise: 64 rays of a spread of .3, net strata included, leave .02 at most.
+  EXPECT_LT(std::abs(sum / count), 0.006);
+  EXPECT_LT(std::sqrt(squares / count), 0.025);
+}
+
+TEST(LightLinks, AgreeWithPathsOnTheGyroid) {
+  const Volume volume = gyroid(25);
+  std::vector<std::size_t> texel;
+  const Sites sites = cell_sites(volume, OuterSide::kLower, texel);
+  Scene scene = furnace(0.8f);
+  scene.environment = half_sky({0.0f, 0.0f, 1.0f});
+  scene.lights.emplace_back(SunLight{.direction = {1.0f, 1.0f, 2.0f}, .irradiance = Vec3f(0.5f)});
+  const LightLinks links(volume, sites, {.rays = 64}, isolux::Run{});
+  for (const int bounces : {0, 1, kAllBounces}) {
+    const Solution solution = links.solve(scene, {.bounces = bounces}, at_texels(volume, texel), isolux::Run{});
+    Sites some;
+    std::vector<std::size_t> number;
+    for (std::size_t i = 0; i < sites.size(); i += 23) {
+      some.positions.push_back(sites.positions[i]);
+      some.isovalues.push_back(sites.isovalues[i]);
+      some.normals.push_back(sites.normals[i]);
+      number.push_back(i);
+    }
+    const SampleSet paths =
+        tracers().create("wide")->trace(volume, scene, some, {.rays = 128, .bounces = bounces}, isolux::Run{}).samples;
+    double sum = 0.0;
+    double mean = 0.0;
+    for (std::size_t k = 0; k < number.size(); ++k) {
+      sum += double(solution.samples.radiance[number[k]]) - double(paths.radiance[k]);
+      mean += double(paths.radiance[k]);
+    }
+    // 600 sites of some .05 of noise each leave .002 of the mean difference's noise; the grid's bias is below.
+    EXPECT_LT(std::abs(sum / double(number.size())), 0.006)
+        << "bounces " << bounces << ", mean " << mean / double(number.size());
+  }
+}
+
+TEST(LightLinks, KeepTheEmissiveFurnaceWhite) {
+  const Volume volume = gyroid(17);
+  std::vector<std::size_t> texel;
+  const Sites sites = cell_sites(volume, OuterSide::kLower, texel);
+  Scene scene = furnace(0.6f);
+  scene.emission = constant(0.4f);
+  const LightLinks links(volume, sites, {.rays = 16}, isolux::Run{});
+  const Solution solution = links.solve(scene, {.tolerance = 1e-6}, at_texels(volume, texel), isolux::Run{});
+  // Le = 1 - rho under an environment of 1: radiance 1 everywhere, whatever the rays meet. The tolerance is the change
+  // of one sweep, and each sweep leaves .6 of the error at most.
+  for (const float e : solution.samples.radiance) EXPECT_NEAR(e, 1.0f, 1e-5f);
+}
+
+TEST(LightLinks, ChangeBrightnessWithoutRays) {
+  const Volume volume = gyroid(17);
+  std::vector<std::size_t> texel;
+  const Sites sites = cell_sites(volume, OuterSide::kLower, texel);
+  const LightLinks links(volume, sites, {.rays = 16}, isolux::Run{});
+  Scene scene = furnace(0.5f);
+  const auto e = [&](float radiance) {
+    scene.environment = UniformEnvironment{Vec3f(radiance)};
+    const Solution solution = links.solve(scene, {.bounces = 3}, at_texels(volume, texel), isolux::Run{});
+    EXPECT_EQ(solution.counters.rays, 0u);
+    EXPECT_EQ(solution.sweeps, 3);
+    return solution.samples.radiance;
+  };
+  const auto dim = e(1.0f);
+  const auto bright = e(2.0f);
+  // Doubling is exact in binary.
+  for (std::size_t i = 0; i < dim.size(); ++i) EXPECT_EQ(bright[i], 2.0f * dim[i]);
+}
+
+TEST(LightLinks, GiveTheSameBitsForAnyNumberOfThreads) {
+  const Volume volume = gyroid(17);
+  std::vector<std::size_t> texel;
+  const Sites sites = cell_sites(volume, OuterSide::kHigher, texel);
+  const auto e = [&](int threads) {
+    isolux::Run run;
+    run.threads = threads;
+    const LightLinks links(volume, sites, {.rays = 16, .outer = OuterSide::kHigher}, run);
+    return links.solve(furnace(0.8f, OuterSide::kHigher), {}, at_texels(volume, texel), run).samples;
+  };
+  const SampleSet one = e(1);
+  const SampleSet three = e(3);
+  EXPECT_EQ(one.radiance, three.radiance);
+  EXPECT_EQ(one.variance, three.variance);
+}
+
+TEST(LightLinks, RefuseAnotherOuterSide) {
+  const Volume volume = gyroid(9);
+  std::vector<std::size_t> texel;
+  const LightLinks links(volume, cell_sites(volume, OuterSide::kLower, texel), {.rays = 4}, isolux::Run{});
+  EXPECT_THROW((void)links.direct(furnace(0.8f, OuterSide::kHigher), {}, isolux::Run{}), InvalidInput);
+}
+
+}  // namespace
+}  // namespace isolux::test
