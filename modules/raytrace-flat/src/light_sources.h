@@ -2,9 +2,8 @@
 
 #include <isolux/raytrace_flat/scene.h>
 
-#include <memory>
 #include <optional>
-#include <vector>
+#include <variant>
 
 #include "directions.h"
 

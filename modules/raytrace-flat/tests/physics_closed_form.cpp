@@ -101,6 +101,7 @@ TEST_P(ClosedForm, EmissiveFurnace) {
     const Vec3 last(volume.lattice().size - 1);
     const auto anywhere = random_positions(200, 7, [](const Vec3&) { return true; });
     std::vector<Vec3> positions;
+    positions.reserve(anywhere.size());
     for (const Vec3& p : anywhere) positions.push_back(volume.lattice().frame.world(p * last));
     Scene scene = furnace(0.6f);
     scene.emission = constant(0.4f);

@@ -134,6 +134,7 @@ TEST_P(Symmetry, TurningAndMirroringTheAxesChangesNothing) {
     const TurnedGyroid turned(axes, signs);
     const Volume volume = turned.volume();
     std::vector<Vec3> places;
+    places.reserve(positions.size());
     for (const Vec3& p : positions) places.push_back(turned.turn(p));
     Scene scene = coloured_sky();
     auto& sky = std::get<SkyEnvironment>(scene.environment);
@@ -206,6 +207,7 @@ TEST_P(Symmetry, FlatCellsFarFromTheOriginLightAsCubesDo) {
       trace(volume, furnace(0.5f), sites_at(volume, positions, OuterSide::kLower), 1024, kAllBounces).samples;
   const Volume cube = unit_cube_volume(33, [](const Vec3& p) { return std::abs(p.x - 0.5); });
   std::vector<Vec3> places;
+  places.reserve(positions.size());
   for (const Vec3& p : positions) places.push_back(back * (p - lattice.frame.origin));
   const SampleSet expected =
       trace(cube, furnace(0.5f), sites_at(cube, places, OuterSide::kLower), 1024, kAllBounces).samples;
