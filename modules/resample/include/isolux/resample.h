@@ -2,4 +2,5 @@
 #pragma once
 
 #include <isolux/resample/fill_unlit.h>
+#include <isolux/resample/light_reader.h>
 #include <isolux/resample/resampler.h>

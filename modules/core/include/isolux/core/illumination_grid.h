@@ -3,22 +3,41 @@
 #include <isolux/core/lattice.h>
 
 #include <cstddef>
+#include <limits>
 #include <vector>
 
 namespace isolux {
+
+/// One term of what the volume itself says of the light at a point: how open the level set is a step in front of it.
+struct NearFieldTerm {
+  float step = 0.0f;   ///< towards lower values, in mean grid spacings of the volume; negative: towards higher ones
+  float mean = 0.0f;   ///< the openness that adds nothing
+  Vec3f weight{0.0f};  ///< change of e per unit of openness, by channel
+};
+
+/// What lets light be read more finely than the texels are, with the volume at hand (isolux/resample/light_reader.h).
+/// Empty in a plain grid; a reader that does not know it reads the values alone.
+struct LightDetail {
+  std::vector<float> slopes;  ///< change of e per unit of the isovalue about each texel, in the order of the values
+  std::vector<NearFieldTerm> near_field;
+  float ceiling = std::numeric_limits<float>::infinity();  ///< no light is above it (nor below 0)
+
+  [[nodiscard]] bool empty() const { return slopes.empty() && near_field.empty(); }
+};
 
 /// A regular grid of e = irradiance/pi over a volume's box; what lights any isosurface later.
 struct IlluminationGrid {
   Lattice lattice;            ///< texel centres in world space
   int channels = 1;           ///< 1 (grey) or 3 (RGB)
   std::vector<float> values;  ///< channel fastest, then x, y, z
+  LightDetail detail;
 
   IlluminationGrid() = default;
   IlluminationGrid(const Lattice& texels, int channel_count)
       : lattice(texels), channels(channel_count), values(texels.count() * std::size_t(channel_count), 0.0f) {}
 
   /// e at a point in the texels' own index space (texel centres at integers), trilinear, clamped to the edge texels as
-  /// GL_CLAMP_TO_EDGE does. Grey grids give the same value three times.
+  /// GL_CLAMP_TO_EDGE does, the detail left aside. Grey grids give the same value three times.
   [[nodiscard]] Vec3f at_index(const Vec3& texel_index) const;
   /// e at a world position.
   [[nodiscard]] Vec3f at_world(const Vec3& world) const;

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <isolux/core/illumination_grid.h>
+#include <isolux/core/volume.h>
+
+#include <memory>
+#include <vector>
+
+namespace isolux {
+
+/// Reads an illumination grid the best way known, with the volume at hand:
+///
+///     e = clamp(V + S (h - h0) + sum over near-field terms of weight (openness - mean), 0, ceiling)
+///
+/// V and S interpolate the textures below trilinearly, h is the isovalue of the point; docs/resampling.md derives it. A
+/// plain grid is read trilinearly. Immutable, callable from many threads; the volume must outlive it.
+class LightReader {
+ public:
+  /// One pass over the grid. \throw InvalidInput if the detail does not match the grid.
+  LightReader(const Volume& volume, const IlluminationGrid& light);
+  ~LightReader();
+  LightReader(LightReader&&) noexcept;
+  LightReader& operator=(LightReader&&) noexcept;
+
+  /// e at a point of the volume's index space on the level set of its own value; grey grids give it three times.
+  [[nodiscard]] Vec3f at_index(const Vec3& index) const;
+  /// The same with the isovalue known, as on the vertices of a mesh.
+  [[nodiscard]] Vec3f at_index(const Vec3& index, double isovalue) const;
+  /// e at a world position.
+  [[nodiscard]] Vec3f at_world(const Vec3& world) const;
+
+  /// V of the formula, in the layout of `light.values`: what a shader samples with hardware filtering.
+  [[nodiscard]] const IlluminationGrid& offsets() const;
+  /// S of the formula in the same layout; empty without slopes.
+  [[nodiscard]] const std::vector<float>& slopes() const;
+  /// h0 of the formula.
+  [[nodiscard]] float reference_isovalue() const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<const Impl> impl_;
+};
+
+/// The formula in GLSL 3.30: `vec3 read_light(vec3 place, float isovalue)`, place in the box from 0 to 1. It needs the
+/// uniforms that its first lines declare.
+[[nodiscard]] const char* light_reader_glsl();
+
+}  // namespace isolux

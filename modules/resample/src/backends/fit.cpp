@@ -1,0 +1,161 @@
+#include <isolux/core/parallel.h>
+#include <isolux/resample/resampler.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "fit_system.h"
+#include "samples.h"
+
+namespace isolux::backends {
+namespace {
+
+/// y += a x, and sums of products in a fixed order.
+void add_scaled(FitVector& y, double a, const FitVector& x) {
+  for (std::size_t i = 0; i < y.values.size(); ++i) y.values[i] += float(a) * x.values[i];
+  for (std::size_t i = 0; i < y.slopes.size(); ++i) y.slopes[i] += float(a) * x.slopes[i];
+  for (std::size_t t = 0; t < y.terms.size(); ++t) y.terms[t] += a * x.terms[t];
+}
+
+double product(const FitVector& x, const FitVector& y) {
+  double sum = 0.0;
+  for (std::size_t i = 0; i < x.values.size(); ++i) sum += double(x.values[i]) * double(y.values[i]);
+  for (std::size_t i = 0; i < x.slopes.size(); ++i) sum += double(x.slopes[i]) * double(y.slopes[i]);
+  for (std::size_t t = 0; t < x.terms.size(); ++t) sum += x.terms[t] * y.terms[t];
+  return sum;
+}
+
+FitVector divided(const FitVector& x, const FitVector& by) {
+  FitVector y = x;
+  for (std::size_t i = 0; i < y.values.size(); ++i) y.values[i] = by.values[i] > 0 ? y.values[i] / by.values[i] : 0;
+  for (std::size_t i = 0; i < y.slopes.size(); ++i) y.slopes[i] = by.slopes[i] > 0 ? y.slopes[i] / by.slopes[i] : 0;
+  for (std::size_t t = 0; t < y.terms.size(); ++t) y.terms[t] = by.terms[t] > 0 ? y.terms[t] / by.terms[t] : 0;
+  return y;
+}
+
+class Fit final : public Resampler {
+ public:
+  struct Options {
+    bool slopes = true;
+    bool near_field = true;
+    double value_prior = 0.03;
+    double slope_prior = 0.03;
+    int iterations = 20;
+
+    void describe(OptionVisitor& option) {
+      option("slopes", slopes, {.help = "a second number a texel: how its light changes with the isovalue"});
+      option("near_field", near_field, {.help = "weigh in how open the volume itself is in front of a point"});
+      option("value_prior", value_prior,
+             {.min = 1e-6,
+              .max = 1e3,
+              .unit = "samples",
+              .help = "weight of the mean light around a texel in its value; grows with the samples' noise"});
+      option("slope_prior", slope_prior,
+             {.min = 1e-6,
+              .max = 1e3,
+              .unit = "samples",
+              .help = "weight of no change with the isovalue in its slope; grows with the samples' noise"});
+      option("iterations", iterations, {.min = 1, .max = 1000, .help = "of the conjugate gradients"});
+    }
+  };
+  explicit Fit(const Options& options) : options_(options) {}
+
+  ResampledGrid resample(const Volume& volume, const SampleSet& samples, const Lattice& texels,
+                         const Run& run) const override {
+    require_samples(samples);
+    const FitSystem system(volume, samples, texels, options_.slopes ? SlopeTerms::kByIsovalue : SlopeTerms::kNone,
+                           options_.near_field ? NearFieldUse::kFitted : NearFieldUse::kNone, run);
+    ResampledGrid result{.grid = IlluminationGrid(texels, samples.channels),
+                         .lit = std::vector<std::uint8_t>(texels.count(), 0)};
+    LightDetail& detail = result.grid.detail;
+    detail.ceiling = *std::max_element(samples.radiance.begin(), samples.radiance.end());
+    if (options_.slopes) detail.slopes.assign(result.grid.values.size(), 0.0f);
+    if (options_.near_field) {
+      for (std::size_t t = 0; t < kNearFieldSteps.size(); ++t) {
+        detail.near_field.push_back(
+            {.step = float(system.steps()[t]), .mean = float(system.mean_openness()[t]), .weight = Vec3f(0.0f)});
+      }
+    }
+    const FitDamping damping = damping_for(samples);
+    for (int c = 0; c < samples.channels; ++c) fit_channel(system, samples, damping, c, result);
+    return result;
+  }
+
+ private:
+  /// Noisy samples say less against the prior. Their mean variance counts and not each one's own: that is small where
+  /// all of a sample's rays agreed by chance, and weighting by it would draw the light there.
+  [[nodiscard]] FitDamping damping_for(const SampleSet& samples) const {
+    double variance = 0.0;
+    double power = 0.0;
+    for (const float v : samples.variance) variance += double(v);
+    for (const float e : samples.radiance) power += double(e) * double(e);
+    variance /= double(samples.variance.size());
+    power /= double(samples.radiance.size());
+    const double noise = power > 0.0 ? 1.0 + variance / (kMisfit * kMisfit * power) : 1.0;
+    return {.value = options_.value_prior * noise, .slope = options_.slope_prior * noise};
+  }
+
+  /// Hestenes & Stiefel, "Methods of conjugate gradients for solving linear systems", 1952, with the diagonal as
+  /// preconditioner, for what the prior leaves.
+  [[nodiscard]] FitVector solve(const FitSystem& system, std::span<const float> light, const FitDamping& damping,
+                                const FitVector& prior) const {
+    const FitVector diagonal = system.diagonal(damping);
+    FitVector x = system.zero();
+    FitVector residual = system.residual_gradient(light, prior);
+    FitVector step = divided(residual, diagonal);
+    double error = product(residual, step);
+    const double enough = 1e-8 * error;
+    for (int i = 0; i < options_.iterations && error > enough; ++i) {
+      const FitVector image = system.normal_product(step, damping);
+      const double length = error / product(step, image);
+      add_scaled(x, length, step);
+      add_scaled(residual, -length, image);
+      const FitVector scaled = divided(residual, diagonal);
+      const double next = product(residual, scaled);
+      FitVector turned = scaled;
+      add_scaled(turned, next / error, step);
+      step = std::move(turned);
+      error = next;
+    }
+    return x;
+  }
+
+  void fit_channel(const FitSystem& system, const SampleSet& samples, const FitDamping& damping, int channel,
+                   ResampledGrid& result) const {
+    const auto channels = std::size_t(samples.channels);
+    const auto first = std::size_t(channel);
+    std::vector<float> light(samples.size());
+    for (std::size_t s = 0; s < light.size(); ++s) light[s] = samples.radiance[s * channels + first];
+    std::vector<float> coverage;
+    const FitVector prior = system.prior(light, coverage);
+    const FitVector x = solve(system, light, damping, prior);
+    LightDetail& detail = result.grid.detail;
+    for (std::size_t t = 0; t < coverage.size(); ++t) {
+      if (!(coverage[t] > 0.0f)) continue;
+      result.lit[t] = 1;
+      result.grid.values[t * channels + first] = prior.values[t] + x.values[t];
+      if (options_.slopes) detail.slopes[t * channels + first] = x.slopes[t] / system.breadths()[t];
+    }
+    for (std::size_t t = 0; t < detail.near_field.size(); ++t) {
+      Vec3f& weight = detail.near_field[t].weight;
+      if (channels == 1) weight = Vec3f(float(x.terms[t]));
+      weight[channel] = float(x.terms[t]);
+    }
+  }
+
+  /// Root mean square of what no texture can say of the light, of the light's own; a typical value on real volumes.
+  static constexpr double kMisfit = 0.1;
+
+  Options options_;
+};
+
+}  // namespace
+
+void fit(Registry<Resampler>& registry) {
+  registry.add<Fit>(
+      "fit",
+      "least-squares fit of the texels to scattered samples, as LightReader reads them: the most accurate; "
+      "wants some 8 samples a texel, stratified");
+}
+
+}  // namespace isolux::backends

@@ -1,0 +1,92 @@
+#pragma once
+
+#include <isolux/core/field.h>
+#include <isolux/core/run.h>
+#include <isolux/core/sample_set.h>
+
+#include <array>
+#include <span>
+#include <vector>
+
+#include "near_field.h"
+
+namespace isolux {
+
+/// Steps of the near-field terms, in mean grid spacings: one and two are as much as reads fast (docs/resampling.md).
+inline constexpr std::array<double, 2> kNearFieldSteps = {1.0, 2.0};
+
+/// What a fit solves for, or any vector of that shape: a value and a slope a texel and a few weights for all.
+struct FitVector {
+  std::vector<float> values;
+  std::vector<float> slopes;                           ///< per unit of FitSystem::breadths(); empty without slopes
+  std::array<double, kNearFieldSteps.size()> terms{};  ///< zero without near field
+};
+
+/// How much a fit holds to its prior, by the same parts, in samples.
+struct FitDamping {
+  double value = 0.0;
+  double slope = 0.0;
+};
+
+enum class SlopeTerms { kNone, kByIsovalue };
+enum class NearFieldUse { kNone, kFitted };
+
+/// The linear least squares problem of texels that, read as LightReader does, give the samples: A is the reading, one
+/// row a sample. Rows are kept by cell of the texel lattice and A is never formed. Products are summed in a fixed
+/// order: cells of one layer after another, even layers before odd ones, which write apart.
+class FitSystem {
+ public:
+  FitSystem(const Volume& volume, const SampleSet& samples, const Lattice& texels, SlopeTerms slopes,
+            NearFieldUse near_field, const Run& run);
+
+  [[nodiscard]] FitVector zero() const;
+  /// Mean light of the samples around each texel, weighted as the reading does; the result's slopes are 0. Where
+  /// `coverage` is 0, no sample is.
+  [[nodiscard]] FitVector prior(std::span<const float> light, std::vector<float>& coverage) const;
+  /// A^T r of the residual r = light - A x.
+  [[nodiscard]] FitVector residual_gradient(std::span<const float> light, const FitVector& x) const;
+  /// (A^T A + damping) x.
+  [[nodiscard]] FitVector normal_product(const FitVector& x, const FitDamping& damping) const;
+  /// The diagonal of A^T A + damping.
+  [[nodiscard]] FitVector diagonal(const FitDamping& damping) const;
+
+  /// For each texel the isovalue span that counts as one in its slope: half the range of f over the texel's support.
+  [[nodiscard]] std::span<const float> breadths() const { return breadths_; }
+  /// Mean openness over the samples.
+  [[nodiscard]] const std::array<double, kNearFieldSteps.size()>& mean_openness() const { return mean_openness_; }
+  [[nodiscard]] std::span<const double> steps() const { return steps_; }
+
+ private:
+  struct Row {
+    std::array<float, 3> place;  ///< in the cell of texels, 0 to 1
+    float isovalue;
+    std::array<float, kNearFieldSteps.size()> openness;  ///< less the mean
+    std::uint32_t sample;
+  };
+  struct Corners;
+
+  void measure_texels(const Volume& volume, const Run& run);
+  void sort_rows(const SampleSet& samples, const Run& run);
+  void measure_near_field(const Volume& volume, const SampleSet& samples, const Run& run);
+  [[nodiscard]] Index3 cells() const;
+  /// Calls visit(corners, rows, layer) for every cell with rows.
+  template <class Visit>
+  void for_each_cell(const Visit& visit) const;
+  /// Adds per-layer sums of the near-field terms in order.
+  [[nodiscard]] std::array<double, kNearFieldSteps.size()> sum_layers(
+      const std::vector<std::array<double, kNearFieldSteps.size()>>& layers) const;
+
+  Lattice texels_;
+  IndexToWorld volume_to_texels_;
+  SlopeTerms slope_terms_;
+  NearFieldUse near_field_;
+  const Run& run_;
+  std::vector<float> isovalues_;  ///< f at the texel centres
+  std::vector<float> breadths_;
+  std::vector<std::uint32_t> starts_;  ///< of each cell's rows, and the end
+  std::vector<Row> rows_;
+  std::array<double, kNearFieldSteps.size()> mean_openness_{};
+  std::array<double, kNearFieldSteps.size()> steps_ = kNearFieldSteps;
+};
+
+}  // namespace isolux

@@ -1,0 +1,25 @@
+#include "near_field.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
+
+namespace isolux {
+
+NearField::NearField(const Volume& volume)
+    : field_(volume), world_to_index_(glm::inverse(volume.lattice().frame.axes)) {
+  const Vec3 spacing = volume.lattice().frame.spacing();
+  spacing_ = std::cbrt(spacing.x * spacing.y * spacing.z);
+}
+
+float NearField::openness(const Vec3& index, double isovalue, double step) const {
+  const Vec3 gradient = field_.world_gradient(index, GradientKind::kCentralDifferences);
+  const double steepness = glm::length(gradient);
+  if (!(steepness > 0.0)) return 0.0f;
+  const double length = step * spacing_;
+  const double ahead = field_.value(index - world_to_index_ * (gradient * (length / steepness)));
+  return float(std::clamp((isovalue - ahead) / (steepness * length), -1.0, 1.0));
+}
+
+}  // namespace isolux

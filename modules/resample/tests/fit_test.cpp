@@ -1,0 +1,199 @@
+#include <gtest/gtest.h>
+#include <isolux/core/error.h>
+#include <isolux/resample.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "support.h"
+
+namespace isolux {
+namespace {
+
+using testing::add_sample;
+using testing::make_volume;
+using testing::ramp_volume;
+using testing::random_samples;
+
+ResampledGrid fitted(const Volume& volume, const SampleSet& samples, const Lattice& texels, Settings settings = {},
+                     const isolux::Run& run = {}) {
+  return resamplers().create("fit", settings)->resample(volume, samples, texels, run);
+}
+
+/// Root mean square of what is read at other samples less what they are.
+double reading_error(const Volume& volume, const IlluminationGrid& light, const SampleSet& at) {
+  const LightReader reader(volume, light);
+  double squares = 0.0;
+  for (std::size_t s = 0; s < at.size(); ++s) {
+    const Vec3f e = reader.at_index(Vec3(at.sites.positions[s]));
+    for (int c = 0; c < at.channels; ++c) {
+      const double d = double(e[c]) - double(at.radiance[s * std::size_t(at.channels) + std::size_t(c)]);
+      squares += d * d;
+    }
+  }
+  return std::sqrt(squares / double(at.radiance.size()));
+}
+
+Volume wavy_volume() {
+  return make_volume({12, 10, 9}, {1.0, 0.7, 2.0}, [](const Vec3& p) {
+    return std::sin(0.9 * p.x) + 0.8 * std::cos(0.8 * p.y + 0.3 * p.z) + 0.1 * p.z;
+  });
+}
+
+// To rounding: the eight float weights of a reading add up to one within 1e-7 or so.
+TEST(Fit, ReproducesConstants) {
+  const Volume volume = wavy_volume();
+  for (const int channels : {1, 3}) {
+    const SampleSet samples =
+        random_samples(volume, 4000, channels, [](const Vec3&, int c) { return 0.4f + float(c); });
+    const SampleSet others = random_samples(
+        volume, 100, channels, [](const Vec3&, int c) { return 0.4f + float(c); }, 2);
+    const ResampledGrid result = fitted(volume, samples, cell_lattice(volume.lattice()));
+    EXPECT_LT(reading_error(volume, fill_unlit(result, {}), others), 1e-6);
+  }
+}
+
+// Light linear in space is in the reach of trilinear texels, up to what the priors (3 percent of a sample) pull.
+TEST(Fit, ReproducesALinearRamp) {
+  const Volume volume = wavy_volume();
+  const auto ramp = [](const Vec3& p, int c) { return float(2.0 + 0.1 * p.x - 0.05 * p.y + 0.02 * p.z * (1 + c)); };
+  const Lattice texels = cell_lattice(volume.lattice());
+  const IlluminationGrid light = fill_unlit(fitted(volume, random_samples(volume, 12000, 3, ramp), texels), {});
+  SampleSet inside;
+  for (const Vec3 p : {Vec3(3.1, 4.2, 5.3), Vec3(6.7, 2.9, 1.4), Vec3(8.5, 7.5, 6.5)})
+    add_sample(inside, volume, p, {ramp(p, 0), ramp(p, 1), ramp(p, 2)});
+  EXPECT_LT(reading_error(volume, light, inside), 0.01);
+}
+
+// Light that is a function of the isovalue, faster than texels can follow: a slope over the isovalue can.
+TEST(Fit, FollowsLightThatChangesWithTheIsovalue) {
+  const Volume volume =
+      make_volume({12, 12, 12}, Vec3(1.0), [](const Vec3& p) { return (int(p.x) % 2 == 0 ? 0.0 : 10.0) + p.y; });
+  const TrilinearField field(volume);
+  const auto by_value = [&](const Vec3& p, int) { return float(0.05 * field.value(p)); };
+  const SampleSet samples = random_samples(volume, 11 * 11 * 11 * 8, 1, by_value);
+  const SampleSet others = random_samples(volume, 500, 1, by_value, 2);
+  const Lattice texels = cell_lattice(volume.lattice());
+  const auto error = [&](const std::string& slopes) {
+    return reading_error(
+        volume, fill_unlit(fitted(volume, samples, texels, {{"slopes", slopes}, {"near_field", "false"}}), {}), others);
+  };
+  // Half the light's range of .5 alternates from texel to texel.
+  EXPECT_GT(error("false"), 0.05);
+  EXPECT_LT(error("true"), 0.005);
+}
+
+TEST(Fit, AveragesNoiseAway) {
+  const Volume volume = wavy_volume();
+  std::uint64_t at = 0;
+  const auto noisy = [&](const Vec3&, int) { return RandomStream(4, at++).uniform_float(); };
+  SampleSet samples = random_samples(volume, 11 * 9 * 8 * 16, 1, noisy);
+  samples.variance.assign(samples.size(), 1.0f / 12.0f);
+  const SampleSet others = random_samples(
+      volume, 500, 1, [](const Vec3&, int) { return 0.5f; }, 2);
+  // A sample's standard deviation is .29; a reading sees some 3.4^3 * 16/8 effective samples a texel's tent, hence
+  // about .29/sqrt(16 * 27/8) = .04 without the priors' help, twice that near the faces.
+  EXPECT_LT(reading_error(volume, fill_unlit(fitted(volume, samples, cell_lattice(volume.lattice())), {}), others),
+            0.09);
+}
+
+TEST(Fit, LeavesTexelsWithoutSamplesUnlit) {
+  const Volume volume = ramp_volume({9, 9, 9});
+  SampleSet samples;
+  add_sample(samples, volume, Vec3(1.0, 1.0, 1.0), {0.5f});
+  const ResampledGrid result = fitted(volume, samples, cell_lattice(volume.lattice()));
+  // The sample lies between the centres of the eight texels at the corner.
+  EXPECT_EQ(std::count(result.lit.begin(), result.lit.end(), std::uint8_t(1)), 8);
+}
+
+TEST(Fit, WorksWithOneTexelAnAxis) {
+  const Volume volume = ramp_volume({5, 6, 7});
+  for (const Index3 size : {Index3(1, 1, 1), Index3(1, 5, 6), Index3(4, 1, 1), Index3(9, 10, 2)}) {
+    const Lattice texels = cell_lattice(volume.lattice(), size);
+    const SampleSet samples = random_samples(volume, 900, 1, [](const Vec3&, int) { return 0.75f; });
+    for (const float v : fill_unlit(fitted(volume, samples, texels), {}).values) EXPECT_NEAR(v, 0.75f, 1e-6f);
+  }
+}
+
+TEST(Fit, StaysFiniteOnFlatData) {
+  Volume volume = ramp_volume({6, 6, 6});
+  for (float& v : volume.values.values()) v = 7.0f;
+  volume.values(3, 3, 3) = 8.0f;
+  const SampleSet samples = random_samples(volume, 2000, 1, [](const Vec3& p, int) { return p.x > 2.5 ? 1.0f : 0.0f; });
+  const IlluminationGrid light = fill_unlit(fitted(volume, samples, cell_lattice(volume.lattice())), {});
+  for (const float v : light.values) EXPECT_TRUE(std::isfinite(v));
+  for (const float v : light.detail.slopes) EXPECT_TRUE(std::isfinite(v));
+}
+
+TEST(Fit, IsTheSameForAnyNumberOfThreads) {
+  const Volume volume = wavy_volume();
+  const SampleSet samples = random_samples(
+      volume, 5000, 3, [](const Vec3& p, int c) { return float(0.5 + 0.5 * std::sin(p.x + 2.0 * p.y + c)); });
+  const Lattice texels = cell_lattice(volume.lattice());
+  const IlluminationGrid one = fitted(volume, samples, texels, {}, {.threads = 1}).grid;
+  const IlluminationGrid four = fitted(volume, samples, texels, {}, {.threads = 4}).grid;
+  EXPECT_EQ(one.values, four.values);
+  EXPECT_EQ(one.detail.slopes, four.detail.slopes);
+  for (std::size_t t = 0; t < one.detail.near_field.size(); ++t) {
+    EXPECT_EQ(one.detail.near_field[t].weight, four.detail.near_field[t].weight);
+  }
+}
+
+TEST(LightReader, ReadsAPlainGridTrilinearly) {
+  const Volume volume = wavy_volume();
+  IlluminationGrid light(cell_lattice(volume.lattice(), {5, 4, 3}), 3);
+  for (std::size_t v = 0; v < light.values.size(); ++v) light.values[v] = float(v % 17);
+  const LightReader reader(volume, light);
+  for (const Vec3 p : {Vec3(0.0), Vec3(3.3, 4.4, 5.5), Vec3(11.0, 9.0, 8.0)}) {
+    const Vec3 world = volume.lattice().frame.world(p);
+    EXPECT_EQ(reader.at_world(world), light.at_world(world));
+  }
+}
+
+TEST(LightReader, AddsSlopesTimesTheIsovaluesDifference) {
+  const Volume volume = ramp_volume({5, 5, 5});
+  IlluminationGrid light(cell_lattice(volume.lattice()), 1);
+  for (float& v : light.values) v = 0.5f;
+  light.detail.slopes.assign(light.values.size(), 0.1f);
+  const LightReader reader(volume, light);
+  const TrilinearField field(volume);
+  // At a texel centre the difference is that from f there; the field is linear, so between them too.
+  const Vec3 centre(1.5, 2.5, 0.5);
+  EXPECT_NEAR(reader.at_index(centre).x, 0.5, 1e-6);  // float rounding of the offsets
+  EXPECT_NEAR(reader.at_index(centre, field.value(centre) + 2.0).x, 0.7, 1e-6);
+  EXPECT_NEAR(reader.at_index(Vec3(2.2, 2.7, 1.9)).x, 0.5, 1e-6);
+}
+
+TEST(LightReader, StaysBetweenBlackAndTheCeiling) {
+  const Volume volume = ramp_volume({5, 5, 5});
+  IlluminationGrid light(cell_lattice(volume.lattice()), 1);
+  light.detail.slopes.assign(light.values.size(), 1.0f);
+  light.detail.ceiling = 0.8f;
+  const LightReader reader(volume, light);
+  EXPECT_EQ(reader.at_index(Vec3(2.0), 100.0).x, 0.8f);
+  EXPECT_EQ(reader.at_index(Vec3(2.0), -100.0).x, 0.0f);
+}
+
+TEST(LightReader, SeesAWallInFrontOfASurface) {
+  // Two plates facing each other across a gap of a voxel or two, and the open outside of one of them.
+  const Volume volume = make_volume({17, 5, 5}, Vec3(1.0), [](const Vec3& p) {
+    return std::max(2.0 - std::fabs(p.x - 5.0), 2.0 - std::fabs(p.x - 8.0));
+  });
+  IlluminationGrid light(cell_lattice(volume.lattice()), 1);
+  light.detail.near_field = {{.step = 2.0f, .mean = 0.0f, .weight = Vec3f(1.0f)}};
+  const LightReader reader(volume, light);
+  const float outside = reader.at_index({4.3, 2.0, 2.0}).x;
+  const float between = reader.at_index({5.7, 2.0, 2.0}).x;
+  EXPECT_NEAR(outside, 1.0, 1e-6);
+  EXPECT_EQ(between, 0.0);
+}
+
+TEST(LightReader, RefusesSlopesOfAnotherGrid) {
+  const Volume volume = ramp_volume({5, 5, 5});
+  IlluminationGrid light(cell_lattice(volume.lattice()), 1);
+  light.detail.slopes.assign(3, 1.0f);
+  EXPECT_THROW(LightReader(volume, light), InvalidInput);
+}
+
+}  // namespace
+}  // namespace isolux
