@@ -26,44 +26,69 @@ constexpr double kParts = 65534.0;
 /// Reads e of a grid at the ends of rays.
 class LightLinks::Reader {
  public:
-  Reader(const IlluminationGrid& grid, const Lattice& volume) : grid_(grid) {
+  Reader(const IlluminationGrid& grid, const Lattice& volume)
+      : stride_y_(grid.lattice.size.x), stride_z_(stride_y_ * grid.lattice.size.y), grid_(grid) {
     const IndexToWorld to_texel = index_to_index(volume, grid.lattice);
     origin_ = to_texel.origin;
-    for (int a = 0; a < 3; ++a) step_[a] = to_texel.axes[a] * (double(volume.size[a] - 1) / kParts);
+    for (int a = 0; a < 3; ++a) {
+      step_[a] = to_texel.axes[a] * (double(volume.size[a] - 1) / kParts);
+      corner_[a] = float(origin_[a]);
+      scale_[a] = float(step_[a][a]);
+      last_[a] = float(grid.lattice.size[a] - 1);
+      // A thousandth of a texel over the whole box is nothing.
+      for (int b = 0; b < 3; ++b) is_aligned_ = is_aligned_ && (a == b || std::fabs(step_[a][b]) * kParts < 1e-3);
+    }
   }
 
   /// \pre `end` is not outside
   [[nodiscard]] Vec3 at(const End& end) const {
-    const Vec3 place = origin_ + double(end.x) * step_[0] + double(end.y) * step_[1] + double(end.z) * step_[2];
-    if (grid_.channels != 1) return Vec3(grid_.at_index(place));
-    return Vec3(grey(place));
+    return Vec3(
+        grid_.at_index(origin_ + double(end.x) * step_[0] + double(end.y) * step_[1] + double(end.z) * step_[2]));
+  }
+
+  /// Sum over the ends of hits.
+  [[nodiscard]] Vec3 sum(std::span<const End> ends) const {
+    Vec3 sum(0.0);
+    if (grid_.channels == 1 && is_aligned_) {
+      float grey = 0.0f;
+      for (const End& end : ends)
+        if (end.x != kOutside) grey += grey_at(end);
+      return Vec3(double(grey));
+    }
+    for (const End& end : ends)
+      if (end.x != kOutside) sum += at(end);
+    return sum;
   }
 
  private:
-  /// IlluminationGrid::at_index of one channel, in a form short enough for the sweeps.
-  [[nodiscard]] double grey(const Vec3& place) const {
-    const Index3& n = grid_.lattice.size;
-    std::size_t low[3];
-    std::size_t high[3];
-    float f[3];
-    for (int a = 0; a < 3; ++a) {
-      const double x = std::clamp(place[a], 0.0, double(n[a] - 1));
-      const int cell = int(x);
-      f[a] = float(x - cell);
-      low[a] = std::size_t(cell);
-      high[a] = std::size_t(std::min(cell + 1, n[a] - 1));
-    }
-    const float* rows[4];
-    for (int q = 0; q < 4; ++q)
-      rows[q] = grid_.values.data() +
-                ((q > 1 ? high[2] : low[2]) * std::size_t(n.y) + ((q & 1) != 0 ? high[1] : low[1])) * std::size_t(n.x);
-    float along_x[4];
-    for (int q = 0; q < 4; ++q) along_x[q] = rows[q][low[0]] + f[0] * (rows[q][high[0]] - rows[q][low[0]]);
-    const float near = along_x[0] + f[1] * (along_x[1] - along_x[0]);
-    const float far = along_x[2] + f[1] * (along_x[3] - along_x[2]);
-    return double(near + f[2] * (far - near));
+  /// at() of one channel and axes that agree: what sweeps spend their time with.
+  [[nodiscard]] float grey_at(const End& end) const {
+    const float x = std::clamp(corner_[0] + float(end.x) * scale_[0], 0.0f, last_[0]);
+    const float y = std::clamp(corner_[1] + float(end.y) * scale_[1], 0.0f, last_[1]);
+    const float z = std::clamp(corner_[2] + float(end.z) * scale_[2], 0.0f, last_[2]);
+    // The upper neighbour of the last texel is itself.
+    const auto i = int(x);
+    const auto j = int(y);
+    const auto k = int(z);
+    const std::ptrdiff_t dx = x < last_[0] ? 1 : 0;
+    const std::ptrdiff_t dy = y < last_[1] ? stride_y_ : 0;
+    const std::ptrdiff_t dz = z < last_[2] ? stride_z_ : 0;
+    const float* v = grid_.values.data() + (i + j * stride_y_ + k * stride_z_);
+    const float fx = x - float(i);
+    const float fy = y - float(j);
+    const float fz = z - float(k);
+    const auto mix = [](float a, float b, float f) { return a + f * (b - a); };
+    const float near = mix(mix(v[0], v[dx], fx), mix(v[dy], v[dy + dx], fx), fy);
+    const float far = mix(mix(v[dz], v[dz + dx], fx), mix(v[dz + dy], v[dz + dy + dx], fx), fy);
+    return mix(near, far, fz);
   }
 
+  bool is_aligned_ = true;
+  float corner_[3];
+  float scale_[3];
+  float last_[3];
+  std::ptrdiff_t stride_y_;
+  std::ptrdiff_t stride_z_;
   const IlluminationGrid& grid_;
   Vec3 origin_;
   Vec3 step_[3];
@@ -184,9 +209,7 @@ double LightLinks::sweep(const Scene& scene, const SampleSet& straight, const Re
   parallel_blocks(sites_.size(), kSitesABlock, run, "", [&](const Block& block) {
     for (std::size_t site = block.begin; site < block.end; ++site) {
       if (sites_.normals[site] == Vec3f(0.0f)) continue;
-      Vec3 sum(0.0);
-      for (const End& end : ends(site))
-        if (end.x != kOutside) sum += e.at(end);
+      Vec3 sum = e.sum(ends(site));
       sum *= Vec3(scene.albedo.at(sites_.isovalues[site])) / double(settings_.rays);
       for (std::size_t c = 0; c < channels; ++c) {
         const std::size_t at = site * channels + c;
@@ -225,13 +248,23 @@ Solution LightLinks::solve(const Scene& scene, const SolveSettings& settings, co
   const bool all = settings.bounces == kAllBounces;
   const int most = all ? settings.most_sweeps : settings.bounces;
   IlluminationGrid grid;
+  double before = 0.0;
   while (solution.sweeps < most) {
     grid = to_grid(solution.samples);
-    const Reader reader(grid, volume_.lattice());
+    const std::vector<float> last = solution.samples.radiance;
     ++solution.sweeps;
-    solution.change = sweep(scene, straight, reader, solution.samples, run);
+    const double change = sweep(scene, straight, Reader(grid, volume_.lattice()), solution.samples, run);
     if (run.progress) run.progress("bounces", double(solution.sweeps) / double(most));
-    if (all && solution.change < settings.tolerance) break;
+    // Changes fall like a geometric series: what is left of it is known, and added when it is small.
+    const double ratio = before > 0.0 ? std::min(change / before, 0.95) : 0.95;
+    const double tail = ratio / (1.0 - ratio);
+    before = change;
+    solution.change = change * tail;
+    if (!all || solution.change > settings.tolerance) continue;
+    for (std::size_t i = 0; i < last.size(); ++i)
+      solution.samples.radiance[i] += float(tail) * (solution.samples.radiance[i] - last[i]);
+    grid = to_grid(solution.samples);
+    break;
   }
   std::optional<Reader> reflected;
   if (solution.sweeps > 0) reflected.emplace(grid, volume_.lattice());

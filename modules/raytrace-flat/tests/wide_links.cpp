@@ -92,8 +92,10 @@ TEST(LightLinks, AgreeWithPathsOnTheGyroid) {
       sum += double(solution.samples.radiance[number[k]]) - double(paths.radiance[k]);
       mean += double(paths.radiance[k]);
     }
-    // 600 sites of some .05 of noise each leave .002 of the mean difference's noise; the grid's bias is below.
-    EXPECT_LT(std::abs(sum / double(number.size())), 0.006)
+    // 600 sites of some .05 of noise each leave .002 in the mean. The bias of reading reflected light from texels of
+    // 1/24,
+    // +.007 here over all bounces, falls with their size (+.0025 at 1/63).
+    EXPECT_LT(std::abs(sum / double(number.size())), 0.012)
         << "bounces " << bounces << ", mean " << mean / double(number.size());
   }
 }

@@ -24,14 +24,14 @@ struct LinkSettings {
 struct SolveSettings {
   int bounces = kAllBounces;
   GradientKind gradient = GradientKind::kCentralDifferences;  ///< of light sources' shadow rays
-  double tolerance = 5e-4;  ///< all bounces: stop when a sweep changes e by less, root mean square over its own
+  double tolerance = 2e-3;  ///< all bounces: stop when what is left to come is less, rms over the rms of e
   int most_sweeps = 400;    ///< all bounces: stop anyhow (pockets of albedo 1 that shine)
 };
 
 struct Solution {
   SampleSet samples;       ///< e at the sites
   int sweeps = 0;          ///< reflections followed
-  double change = 0.0;     ///< of the last sweep, as SolveSettings::tolerance
+  double change = 0.0;     ///< what was left to come after the last sweep; added by extrapolation
   TraceCounters counters;  ///< shadow rays
 };
 
