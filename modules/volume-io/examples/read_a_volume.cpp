@@ -1,3 +1,4 @@
+#include <isolux/core/error.h>
 #include <isolux/volume_io.h>
 
 #include <cstdio>
