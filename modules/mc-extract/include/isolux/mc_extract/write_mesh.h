@@ -6,13 +6,32 @@
 #include <cstdint>
 #include <span>
 #include <string>
+#include <vector>
 
 namespace isolux {
 
+/// A colour as a screen shows it (sRGB).
 using Rgb8 = std::array<std::uint8_t, 3>;
 
 /// Writes binary little-endian PLY: world coordinates, float vertex normals and, if `colours` is not empty (one a
-/// vertex), `uchar red green blue`. Not atomic: see write_atomically_by_name of volume-io. \throw IoError naming path.
+/// vertex), `uchar red green blue`. Not atomic: see write_atomically_by_name of volume-io. \throw IoError naming path;
+/// InvalidInput if there are colours, but not one a vertex.
 void write_ply(const IsoMesh& mesh, std::span<const Rgb8> colours, const std::string& path);
+
+/// Writes binary glTF 2.0: one mesh with normals and, if there are colours, vertex colours in linear light and a
+/// material that is shown unlit (KHR_materials_unlit), for they are the light. Coordinates are the world's as they are;
+/// viewers take y as up. \throw as write_ply; InvalidInput beyond the format's 4 GiB.
+void write_glb(const IsoMesh& mesh, std::span<const Rgb8> colours, const std::string& path);
+
+/// Writes Wavefront OBJ: text that reads back as the same floats, normals, and colours as fractions behind the
+/// coordinates. \throw as write_ply.
+void write_obj(const IsoMesh& mesh, std::span<const Rgb8> colours, const std::string& path);
+
+/// Writes the format that the path's extension names: `.ply`, `.glb`, `.obj`, or through OpenMesh `.off` (text; normals
+/// and colours) and `.stl` (binary; neither). \throw as write_ply; InvalidInput for another extension.
+void write_mesh(const IsoMesh& mesh, std::span<const Rgb8> colours, const std::string& path);
+
+/// The extensions that write_mesh knows, with their dots.
+[[nodiscard]] const std::vector<std::string>& mesh_extensions();
 
 }  // namespace isolux

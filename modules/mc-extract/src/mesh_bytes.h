@@ -1,0 +1,27 @@
+#pragma once
+
+#include <isolux/mc_extract/write_mesh.h>
+
+#include <bit>
+#include <cstring>
+#include <vector>
+
+namespace isolux::mc {
+
+static_assert(std::endian::native == std::endian::little, "the writers put numbers as they lie in memory");
+
+/// Appends a number or a plain array as it lies in memory.
+template <class T>
+void put(std::vector<char>& bytes, const T& value) {
+  const std::size_t at = bytes.size();
+  bytes.resize(at + sizeof(T));
+  std::memcpy(bytes.data() + at, &value, sizeof(T));
+}
+
+/// \throw InvalidInput unless there is one colour a vertex, or none.
+void require_colours_fit(const IsoMesh& mesh, std::span<const Rgb8> colours);
+
+/// \throw IoError naming path.
+void write_bytes(const std::vector<char>& bytes, const std::string& path);
+
+}  // namespace isolux::mc
