@@ -158,8 +158,8 @@ Volume sample_analytic_field(std::string_view name, int n, const Run& run) {
         values[at] = RandomStream(run.seed, at).uniform_float();
       } else {
         // i / (n - 1), not i times the step: the last point is 1 exactly.
-        const Vec3 p =
-            Vec3(double(at % points), double(at / points % points), double(at / points / points)) / double(n - 1);
+        const Index3 index(int(at % points), int(at / points % points), int(at / points / points));
+        const Vec3 p = Vec3(index) / double(n - 1);
         values[at] = float(field->value(p));
       }
     }

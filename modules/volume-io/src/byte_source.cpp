@@ -73,12 +73,11 @@ class GzipSource final : public ByteSource {
   }
   // A gzip file may be several members one after another; anything else behind a member is not ours.
   void next_member() {
-    if (stream_.avail_in == 0 && !refill()) {
-      ended_ = true;
-    } else if (*stream_.next_in != 0x1F) {
-      ended_ = true;
-    } else {
+    const bool more = stream_.avail_in > 0 || refill();
+    if (more && *stream_.next_in == 0x1F) {
       inflateReset(&stream_);
+    } else {
+      ended_ = true;
     }
   }
 

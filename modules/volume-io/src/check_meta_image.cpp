@@ -51,9 +51,9 @@ class MetaFields {
  public:
   MetaFields(const std::string& path, MetaText text) : path_(path), text_(std::move(text)) {}
 
-  [[nodiscard]] std::string text(const std::string& key, std::string otherwise = {}) const {
+  [[nodiscard]] std::string text(const std::string& key, const std::string& otherwise = {}) const {
     const auto it = text_.fields.find(key);
-    return it == text_.fields.end() ? std::move(otherwise) : it->second;
+    return it == text_.fields.end() ? otherwise : it->second;
   }
   [[nodiscard]] bool truth(const std::string& key) const {
     const std::string word = text(key, "False");

@@ -4,12 +4,14 @@
 
 #include <fmt/format.h>
 
+#include <numeric>
+
 /// Small valid files of each format, all holding the 3x2x2 voxels 0, 1, ... 11, for the tests to read and to spoil.
 namespace isolux::test {
 
 inline std::vector<std::int16_t> ramp(int count = 12, int first = 0) {
-  std::vector<std::int16_t> values;
-  for (int i = 0; i < count; ++i) values.push_back(std::int16_t(first + i));
+  std::vector<std::int16_t> values(std::size_t(count), 0);
+  std::iota(values.begin(), values.end(), std::int16_t(first));
   return values;
 }
 
