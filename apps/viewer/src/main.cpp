@@ -1,5 +1,6 @@
 // isolux-view: the interactive window. `isolux view` starts it with the arguments that it was given.
 #include <fmt/format.h>
+#include <isolux/bake/scene_file.h>
 #include <isolux/bake/version.h>
 #include <isolux/core/error.h>
 #include <isolux/volume_io/read.h>
@@ -39,6 +40,7 @@ int complain(std::string why, ExitStatus status) {
 struct Words {
   VolumeOptions volume;
   LightOptions light;
+  std::string scene;
   std::optional<double> isovalue;
   std::string screenshot;
   int frames = 0;
@@ -55,6 +57,8 @@ struct Words {
     program.get_option("VOLUME")->required(false)->description(
         "a file, a folder of DICOM slices, or gen:NAME[:N]; without one a test field is shown");
     light.add_to(program);
+    program.add_option("--scene", scene, "what lights a draft (key b; default: uniform white sky, albedo 0.8)")
+        ->type_name("SCENE.json");
     program.add_option("--iso", isovalue, "isovalue to start with (default: Otsu's threshold)")->type_name("H");
     program.add_option("--mode", mode, "global (default with --light), local, or both side by side")
         ->check(CLI::IsMember({"global", "local", "both"}));
@@ -72,7 +76,7 @@ struct Words {
         ->type_name("N");
   }
 
-  /// \throw UsageError
+  /// \throw UsageError, IoError, InvalidInput
   [[nodiscard]] viewer::AppSettings settings(const Session& session) const {
     viewer::AppSettings result;
     std::tie(result.width, result.height) = parse_size2("--size", size);
@@ -87,6 +91,7 @@ struct Words {
     result.viewer.extractor.name = backend;
     apply_settings(set, {{"extractor", &result.viewer.extractor.settings}});
     result.viewer.run = session.run;
+    if (!scene.empty()) result.viewer.scene = read_scene(scene);
     if (!outer.empty()) result.viewer.outer = outer == "higher" ? OuterSide::kHigher : OuterSide::kLower;
     if (mode == "local") result.viewer.layout = viewer::Layout::kLocal;
     if (mode == "global") result.viewer.layout = viewer::Layout::kGlobal;

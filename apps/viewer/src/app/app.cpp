@@ -44,8 +44,8 @@ class App final : public WindowListener {
     if (const auto action = action_of(key, modifiers)) viewer_.act(*action);
     dirty_ = true;
   }
-  void on_press(MouseButton button, double x, double y) override {
-    viewer_.press(button, x, y);
+  void on_press(MouseButton button) override {
+    viewer_.press(button);
     dirty_ = true;
   }
   void on_move(double x, double y) override { dirty_ = viewer_.move(x, y) || dirty_; }

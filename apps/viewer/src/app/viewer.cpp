@@ -151,8 +151,8 @@ void Viewer::start_bake() {
   run.threads = std::max(1, thread_count(run) - 1);
   bake_ = std::make_unique<BakeWorker>(
       run,
-      [volume = document_.volume, &stages = stages_](const Run& watched) {
-        return bake_draft(*volume, stages, watched);
+      [volume = document_.volume, scene = settings_.scene, &stages = stages_](const Run& watched) {
+        return bake_draft(*volume, scene, stages, watched);
       },
       wake_);
 }
@@ -169,14 +169,13 @@ void Viewer::export_shown() {
   }
 }
 
-void Viewer::press(MouseButton button, double x, double y) {
-  mouse_ = {x, y};
-  if (button == MouseButton::kLeft && slider_->press(x, y)) {
+void Viewer::press(MouseButton button) {
+  if (button == MouseButton::kLeft && slider_->press(mouse_.x, mouse_.y)) {
     drag_ = Drag::kSlider;
     request_surface();
     return;
   }
-  drag_pane_ = pane_at(make_panes(layout_, size_.width, size_.height), x);
+  drag_pane_ = pane_at(make_panes(layout_, size_.width, size_.height), mouse_.x);
   drag_ = button == MouseButton::kLeft ? Drag::kRotate : button == MouseButton::kMiddle ? Drag::kPan : Drag::kZoom;
 }
 

@@ -29,6 +29,7 @@ struct ViewerSettings {
   double exposure_stops = 0.0;
   bool help = false;
   BackendChoice extractor;
+  Scene scene;  ///< of a draft of the light
   Run run;
 };
 
@@ -52,7 +53,8 @@ class Viewer {
   void open(Document document);
 
   void act(Action action);
-  void press(MouseButton button, double x, double y);
+  /// At the place of the last move(): asking for the mouse now would be too late where a picture takes long.
+  void press(MouseButton button);
   /// True if the picture changed.
   [[nodiscard]] bool move(double x, double y);
   void release();

@@ -37,16 +37,12 @@ void on_button(GLFWwindow* window, int button, int action, int modifiers) {
     listener(window).on_release();
     return;
   }
-  double x = 0.0;
-  double y = 0.0;
-  glfwGetCursorPos(window, &x, &y);
-  const double scale = pixels_a_coordinate(window);
   MouseButton meant = MouseButton::kLeft;
   if (button == GLFW_MOUSE_BUTTON_RIGHT) meant = MouseButton::kRight;
   if (button == GLFW_MOUSE_BUTTON_MIDDLE || (button == GLFW_MOUSE_BUTTON_LEFT && (modifiers & GLFW_MOD_SHIFT) != 0)) {
     meant = MouseButton::kMiddle;
   }
-  listener(window).on_press(meant, x * scale, y * scale);
+  listener(window).on_press(meant);
 }
 
 void on_move(GLFWwindow* window, double x, double y) {

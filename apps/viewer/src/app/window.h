@@ -14,7 +14,8 @@ class WindowListener {
  public:
   virtual ~WindowListener() = default;
   virtual void on_key(int key, int modifiers) = 0;
-  virtual void on_press(MouseButton button, double x, double y) = 0;
+  /// The place is that of the last on_move().
+  virtual void on_press(MouseButton button) = 0;
   virtual void on_move(double x, double y) = 0;
   virtual void on_release() = 0;
   virtual void on_scroll(double steps) = 0;

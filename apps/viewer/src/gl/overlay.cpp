@@ -12,8 +12,8 @@ Overlay::Overlay() : program_(kOverlayVertexShader, kOverlayFragmentShader) {
   glEnableVertexAttribArray(1);
   glVertexAttribPointer(0, 2, GL_FLOAT, GL_FALSE, sizeof(Corner), nullptr);
   // OpenGL wants the offset in the buffer as a pointer.
-  glVertexAttribPointer(1, 4, GL_UNSIGNED_BYTE, GL_TRUE, sizeof(Corner),
-                        reinterpret_cast<const void*>(offsetof(Corner, colour)));
+  const auto* colour_offset = reinterpret_cast<const void*>(offsetof(Corner, colour));  // NOLINT: see above
+  glVertexAttribPointer(1, 4, GL_UNSIGNED_BYTE, GL_TRUE, sizeof(Corner), colour_offset);
 }
 
 void Overlay::rectangle(const Box& box, const Rgba8& colour) {

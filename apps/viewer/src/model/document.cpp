@@ -30,11 +30,10 @@ Index3 draft_texels(Index3 volume_size, double most) {
   return glm::max(Index3(cells * factor), Index3(1));
 }
 
-LightFile bake_draft(const Volume& volume, const Stages& stages, const Run& run) {
+LightFile bake_draft(const Volume& volume, const Scene& scene, const Stages& stages, const Run& run) {
   BakeSettings settings;
   settings.trace.rays = 16;
   settings.texels = draft_texels(volume.lattice().size, 3e5);
-  const Scene scene;
   return make_light_file(bake(volume, scene, settings, stages, run), volume, scene, settings, run);
 }
 

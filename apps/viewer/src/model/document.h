@@ -25,7 +25,7 @@ struct Document {
 [[nodiscard]] Vec3f albedo_of(const Document& document, float isovalue);
 
 /// A light that is soon there: few rays, and at most 300,000 texels. \throw as bake()
-[[nodiscard]] LightFile bake_draft(const Volume& volume, const Stages& stages, const Run& run);
+[[nodiscard]] LightFile bake_draft(const Volume& volume, const Scene& scene, const Stages& stages, const Run& run);
 
 /// Texels of a draft: one a cell, fewer by the same factor on each axis where that would be more than `most`.
 [[nodiscard]] Index3 draft_texels(Index3 volume_size, double most);

@@ -1,13 +1,14 @@
 #include "ui/panes.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace isolux::viewer {
 
 std::vector<Pane> make_panes(Layout layout, double width, double height) {
   if (layout != Layout::kSideBySide)
     return {{{0.0, 0.0, width, height}, layout == Layout::kLocal ? Lighting::kLocal : Lighting::kGlobal}};
-  const double left = double(int(width) / 2);
+  const double left = std::floor(width / 2.0);
   return {{{0.0, 0.0, left, height}, Lighting::kLocal}, {{left, 0.0, width - left, height}, Lighting::kGlobal}};
 }
 
