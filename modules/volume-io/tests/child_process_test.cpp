@@ -86,6 +86,7 @@ TEST(ChildProcess, WorksBesideOtherThreadsAndFromSeveralAtOnce) {
   std::atomic<int> good{0};
   parallel_blocks(24, 1, run, "", [&](const Block& block) {
     std::vector<std::string> churn;
+    churn.reserve(1000);
     for (int i = 0; i < 1000; ++i) churn.emplace_back(std::size_t(i), 'x');
     const auto number = std::uint64_t(block.index);
     std::uint64_t got = 0;

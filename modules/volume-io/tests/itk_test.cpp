@@ -14,7 +14,7 @@ const ReadOptions kSpaced{.raw = {}, .spacing = Vec3(0.5, 2, 4), .allow_external
 /// Files for ITK; skipped where isolux is built without it.
 class Itk : public testing::Test {
  protected:
-  void SetUp() override {
+  void SetUp() override {  // NOLINT(readability-identifier-naming): GoogleTest's name
     if (!test::has_reader("itk")) GTEST_SKIP() << "no ITK in this build";
   }
   /// The ramp 0, 1, ... 11 on 3x2x2 voxels.
@@ -24,7 +24,7 @@ class Itk : public testing::Test {
   }
   [[nodiscard]] std::string refused(const std::string& name, const std::string& bytes,
                                     const ReadOptions& options = {}) const {
-    const std::string message = test::reading_error(folder_.write(name, bytes), options);
+    std::string message = test::reading_error(folder_.write(name, bytes), options);
     EXPECT_THAT(message, HasSubstr(name)) << "a message names the file";
     EXPECT_EQ(message.find('\n'), std::string::npos);
     return message;
@@ -62,7 +62,7 @@ TEST_F(Itk, RefusesHostileNifti) {
     std::string bytes = test::nifti_sample();
     test::put(bytes, offset, value);
     const std::string packed = test::gzipped(bytes);
-    const std::string message = refused("a.nii", bytes);
+    std::string message = refused("a.nii", bytes);
     EXPECT_FALSE(refused("b.nii.gz", packed).empty());
     return message;
   };

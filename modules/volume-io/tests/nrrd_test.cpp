@@ -23,9 +23,9 @@ void expect_type_is_read(const test::TemporaryFolder& folder, const std::vector<
   const std::vector<T> values = {Limits::lowest(), T(0), T(1), T(Limits::is_integer ? Limits::max() : T(0.1))};
   for (const auto& name : names) {
     for (const bool big : {false, true}) {
-      const auto path = folder.write("a.nrrd", header("type: " + name + "\n" + kSmall +
-                                                      "endian: " + (big ? "big" : "little") + "\nencoding: raw\n") +
-                                                   bytes_of(values, big));
+      const std::string fields =
+          fmt::format("type: {}\n{}endian: {}\nencoding: raw\n", name, kSmall, big ? "big" : "little");
+      const auto path = folder.write("a.nrrd", header(fields).append(bytes_of(values, big)));
       const Volume volume = read_volume(path);
       ASSERT_EQ(volume.values.values().size(), 4u) << name;
       for (std::size_t i = 0; i < 4; ++i) EXPECT_EQ(volume.values.values()[i], float(values[i])) << name << " " << big;

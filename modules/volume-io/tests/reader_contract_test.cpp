@@ -36,7 +36,7 @@ std::vector<Sample> samples() {
 
 class ReaderContract : public testing::TestWithParam<Sample> {
  protected:
-  void SetUp() override {
+  void SetUp() override {  // NOLINT(readability-identifier-naming): GoogleTest's name
     if (!test::has_reader(GetParam().reader)) GTEST_SKIP() << "not in this build";
   }
   test::TemporaryFolder folder_;

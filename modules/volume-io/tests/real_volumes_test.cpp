@@ -46,7 +46,7 @@ std::string data_folder() {
 
 class RealVolumes : public testing::Test {
  protected:
-  void SetUp() override {
+  void SetUp() override {  // NOLINT(readability-identifier-naming): GoogleTest's name
     if (data_folder().empty()) GTEST_SKIP() << "ISOLUX_DATA names no folder";
   }
 };
