@@ -141,7 +141,7 @@ void Viewer::show_side_by_side() {
 
 std::string Viewer::advice() const {
   if (bake_) return "the light is being baked";
-  return "no light yet: press b for a draft, or run  isolux bake VOLUME -o LIGHT.nrrd  and give --light LIGHT.nrrd";
+  return "no light yet: press b for a draft, or\nisolux bake VOLUME -o LIGHT.nrrd  and give --light LIGHT.nrrd";
 }
 
 void Viewer::start_bake() {
