@@ -20,6 +20,7 @@ struct Options {
   std::string iso_range;
   std::string texels;
   std::string lattice = "cells";
+  std::string bounce_method;
   double rmse = 0.0;
   std::size_t samples = 0;
   std::string sampler;
@@ -35,6 +36,9 @@ BakeSettings bake_settings(const Options& options, const Stages& stages) {
   settings.tracer.name = options.trace.tracer();
   settings.resampler.name = options.resampler;
   settings.samples = options.samples;
+  if (!options.bounce_method.empty()) {
+    settings.bounce_method = options.bounce_method == "paths" ? BounceMethod::kPaths : BounceMethod::kIterated;
+  }
   settings.lattice = options.lattice == "voxels" ? TexelLattice::kVoxels : TexelLattice::kCells;
   if (!options.texels.empty()) settings.texels = parse_size3("--texels", options.texels);
   if (!options.iso_range.empty()) settings.isovalues = parse_range("--iso-range", options.iso_range);
@@ -81,6 +85,7 @@ void run_bake(const Options& options, Session& session) {
   report["sites"] = result.sites;
   report["texels"] = texels.count();
   report["texel_dims"] = {texels.size.x, texels.size.y, texels.size.z};
+  report["sweeps"] = result.sweeps;
   report["unlit_texels"] = result.unlit_texels;
   report["rmse_estimate"] = result.rmse_estimate;
   report["settings"] = nlohmann::json::parse(settings_to_json(settings, session.run));
@@ -107,6 +112,11 @@ void add_bake_command(CLI::App& program, Session& session) {
       ->type_name("NXxNYxNZ");
   command.add_option("--lattice", options->lattice, "texels at the cell centres (default) or at the voxels")
       ->check(CLI::IsMember({"cells", "voxels"}));
+  command
+      .add_option("--bounce-method", options->bounce_method,
+                  "iterated: trace once, keep the hits and iterate on the grid (default for "
+                  "sites at texels, unless --tracer is given); paths: unbiased")
+      ->check(CLI::IsMember({"iterated", "paths"}));
   command.add_option("--rmse", options->rmse, "error wanted: chooses the rays")
       ->check(CLI::PositiveNumber)
       ->type_name("TARGET");

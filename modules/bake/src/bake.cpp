@@ -2,6 +2,7 @@
 #include <isolux/bake/bake.h>
 #include <isolux/core/error.h>
 #include <isolux/core/stopwatch.h>
+#include <isolux/raytrace_flat/light_links.h>
 #include <isolux/resample/fill_unlit.h>
 
 #include <algorithm>
@@ -23,6 +24,34 @@ void require_range(const Volume& volume, const std::optional<ValueRange>& wanted
   }
 }
 
+SampleSet trace_paths(const Volume& volume, const Scene& scene, Sites sites, const BakeSettings& settings,
+                      const Stages& stages, const Run& run, BakeResult& result) {
+  const Stopwatch watch;
+  const auto tracer = stages.tracers.create(settings.tracer.name, settings.tracer.settings);
+  TraceResult traced = tracer->trace(volume, scene, std::move(sites), settings.trace, run);
+  result.seconds["trace"] = watch.seconds();
+  result.counters = traced.counters;
+  return std::move(traced.samples);
+}
+
+SampleSet iterate(const Volume& volume, const Scene& scene, Sites sites, const BakeSettings& settings,
+                  const Resampler& resampler, const Lattice& texels, const Run& run, BakeResult& result) {
+  const Stopwatch trace_watch;
+  const LightLinks links(volume, std::move(sites), {.rays = settings.trace.rays, .outer = scene.outer}, run);
+  result.seconds["trace"] = trace_watch.seconds();
+  const Stopwatch bounce_watch;
+  const auto to_grid = [&](const SampleSet& samples) {
+    return fill_unlit(resampler.resample(volume, samples, texels, run), run);
+  };
+  Solution solution =
+      links.solve(scene, {.bounces = settings.trace.bounces, .gradient = settings.trace.gradient}, to_grid, run);
+  result.seconds["bounces"] = bounce_watch.seconds();
+  result.sweeps = solution.sweeps;
+  result.counters = links.counters();
+  result.counters.rays += solution.counters.rays;
+  return std::move(solution.samples);
+}
+
 }  // namespace
 
 Lattice texel_lattice(const Lattice& volume, const BakeSettings& settings) {
@@ -41,6 +70,11 @@ BakeSettings with_defaults(BakeSettings settings, const Stages& stages) {
   if (settings.sampler.name.empty()) settings.sampler.name = settings.samples == 0 ? "texels" : "low_discrepancy";
   if (settings.resampler.name.empty())
     settings.resampler.name = settings.sampler.name == "texels" ? "direct" : "cell_grid";
+  if (settings.bounce_method == BounceMethod::kDefault) {
+    const bool iterated =
+        settings.tracer.name.empty() && settings.resampler.name == "direct" && settings.trace.bounces != 0;
+    settings.bounce_method = iterated ? BounceMethod::kIterated : BounceMethod::kPaths;
+  }
   if (settings.tracer.name.empty()) settings.tracer.name = stages.tracers.info({}).name;
   return settings;
 }
@@ -51,7 +85,6 @@ BakeResult bake(const Volume& volume, const Scene& scene, const BakeSettings& gi
   require_usable(volume);
   require_range(volume, settings.isovalues);
   const auto sampler = stages.samplers.create(settings.sampler.name, settings.sampler.settings);
-  const auto tracer = stages.tracers.create(settings.tracer.name, settings.tracer.settings);
   const auto resampler = stages.resamplers.create(settings.resampler.name, settings.resampler.settings);
   const Lattice texels = texel_lattice(volume.lattice(), settings);
 
@@ -69,16 +102,15 @@ BakeResult bake(const Volume& volume, const Scene& scene, const BakeSettings& gi
   if (result.sites == 0)
     throw InvalidInput(fmt::format("{}: no site has a normal and an isovalue in the range", volume.name));
 
-  const Stopwatch trace_watch;
-  TraceResult traced = tracer->trace(volume, scene, std::move(sites), settings.trace, run);
-  result.seconds["trace"] = trace_watch.seconds();
-  result.counters = traced.counters;
+  const SampleSet samples = settings.bounce_method == BounceMethod::kIterated
+                                ? iterate(volume, scene, std::move(sites), settings, *resampler, texels, run, result)
+                                : trace_paths(volume, scene, std::move(sites), settings, stages, run, result);
   double variance = 0.0;
-  for (const float v : traced.samples.variance) variance += double(v);
+  for (const float v : samples.variance) variance += double(v);
   result.rmse_estimate = std::sqrt(variance / double(result.sites));
 
   const Stopwatch resample_watch;
-  ResampledGrid partial = resampler->resample(volume, traced.samples, texels, run);
+  ResampledGrid partial = resampler->resample(volume, samples, texels, run);
   result.unlit_texels = std::size_t(std::count(partial.lit.begin(), partial.lit.end(), std::uint8_t(0)));
   result.light = fill_unlit(std::move(partial), run);
   result.seconds["resample"] = resample_watch.seconds();

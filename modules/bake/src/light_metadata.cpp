@@ -42,6 +42,7 @@ std::string settings_to_json(const BakeSettings& settings, const Run& run) {
   } else {
     json["bounces"] = settings.trace.bounces;
   }
+  json["bounce_method"] = settings.bounce_method == BounceMethod::kIterated ? "iterated" : "paths";
   json["gradient"] = settings.trace.gradient == GradientKind::kCell ? "cell" : "central_differences";
   if (settings.samples != 0) json["samples"] = settings.samples;
   if (settings.texels) json["texels"] = {settings.texels->x, settings.texels->y, settings.texels->z};

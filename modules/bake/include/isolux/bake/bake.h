@@ -20,11 +20,21 @@ enum class TexelLattice {
   kVoxels  ///< at the grid points, as in Challis 2010
 };
 
+/// How reflected light is found.
+enum class BounceMethod {
+  kDefault,   ///< kIterated for sites at texels unless a tracer is named, else kPaths
+  kIterated,  ///< rays are traced once and their hits kept; light is read there from the last iterate of the grid
+              ///< (LightLinks): several times cheaper, with the grid's own error as a small bias; does not use the
+              ///< tracer
+  kPaths  ///< the tracer follows every path to its end: unbiased
+};
+
 struct BakeSettings {
   BackendChoice sampler;
   BackendChoice tracer;
   BackendChoice resampler;
   TraceSettings trace;
+  BounceMethod bounce_method = BounceMethod::kDefault;
   TexelLattice lattice = TexelLattice::kCells;
   std::optional<Index3> texels;         ///< of kCells only; default one a cell
   std::size_t samples = 0;              ///< sites of scattering samplers; 0: one a texel
@@ -35,9 +45,10 @@ struct BakeResult {
   IlluminationGrid light;
   TraceCounters counters;
   std::size_t sites = 0;
+  int sweeps = 0;                         ///< of BounceMethod::kIterated
   std::size_t unlit_texels = 0;           ///< filled from their lit neighbours
   double rmse_estimate = 0.0;             ///< root mean squared standard error of e over the sites
-  std::map<std::string, double> seconds;  ///< by stage: sites, trace, resample
+  std::map<std::string, double> seconds;  ///< by stage: sites, trace, bounces (of kIterated), resample
 };
 
 /// `settings` with every backend named: sites at the texels and the direct resampler, or, where a number of samples or
