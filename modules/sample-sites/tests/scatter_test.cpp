@@ -25,7 +25,8 @@ TEST_P(Scatter, DensityIsUniformInTheWorld) {
   const Sites sites = sample(GetParam(), volume, 64000);
   std::vector<double> bins(8 * 4 * 16);
   for (const Vec3f& p : sites.positions) {
-    bins[std::size_t(std::min(int(p.z / 2), 15) * 32 + std::min(int(p.y / 2), 3) * 8 + std::min(int(p.x / 2), 7))] += 1;
+    const std::size_t row = 4 * std::size_t(std::min(int(p.z / 2), 15)) + std::size_t(std::min(int(p.y / 2), 3));
+    bins[8 * row + std::size_t(std::min(int(p.x / 2), 7))] += 1;
   }
   const double expected = double(sites.size()) / double(bins.size());
   double chi_squared = 0.0;
@@ -41,7 +42,7 @@ TEST_P(Scatter, DensityIsUniformInTheCellsOfARange) {
   EXPECT_NEAR(double(sites.size()), 42000.0, 0.03 * 42000.0);  // the pilot of `stratified` knows the share to 1 %
   std::vector<double> bins(21 * 6);
   for (const Vec3f& p : sites.positions) {
-    bins[std::size_t(std::min(int((p.x - 4.25f) * 4), 20) * 6 + std::min(int(p.y / 2), 5))] += 1;
+    bins[6 * std::size_t(std::min(int((p.x - 4.25f) * 4), 20)) + std::size_t(std::min(int(p.y / 2), 5))] += 1;
   }
   const double expected = double(sites.size()) / double(bins.size());
   double chi_squared = 0.0;
@@ -104,7 +105,7 @@ TEST(Stratified, PutsOneSiteInEachStratum) {
   const Sites sites = sample("stratified", volume, 512);
   ASSERT_EQ(sites.size(), 512u);
   std::vector<int> bins(512);
-  for (const Vec3f& p : sites.positions) ++bins[std::size_t(int(p.z) * 64 + int(p.y) * 8 + int(p.x))];
+  for (const Vec3f& p : sites.positions) ++bins[64 * std::size_t(p.z) + 8 * std::size_t(p.y) + std::size_t(p.x)];
   for (const int n : bins) EXPECT_EQ(n, 1);
 }
 

@@ -73,7 +73,9 @@ class StratifiedSampler final : public SiteSampler {
       RandomStream random(seed, i);
       const auto nx = std::uint64_t(strata.x);
       const auto ny = std::uint64_t(strata.y);
-      Vec3 u(double(i % nx), double(i / nx % ny), double(i / (nx * ny)));
+      const std::uint64_t slab = i / (nx * ny);
+      const std::uint64_t row = i / nx % ny;
+      Vec3 u(double(i % nx), double(row), double(slab));
       for (int a = 0; a < 3; ++a) u[a] = (u[a] + 0.5 + jitter * (random.uniform_double() - 0.5)) / strata[a];
       return u;
     };

@@ -17,7 +17,9 @@ class TexelSampler final : public SiteSampler {
     std::vector<Vec3f> positions(request.texels.count());
     parallel_blocks(positions.size(), 1 << 14, run, {}, [&](const Block& block) {
       for (std::size_t t = block.begin; t < block.end; ++t) {
-        positions[t] = Vec3f(to_volume.world(Vec3(double(t % nx), double(t / nx % ny), double(t / (nx * ny)))));
+        const std::size_t slab = t / (nx * ny);
+        const std::size_t row = t / nx % ny;
+        positions[t] = Vec3f(to_volume.world(Vec3(double(t % nx), double(row), double(slab))));
       }
     });
     return make_sites(volume, std::move(positions), request, run);
