@@ -47,7 +47,10 @@ class NearestNeighbours {
     if (limits_.count < kMany && found_.size() >= 2 * limits_.count + 16) shrink();
   }
 
-  /// Reach beyond which nothing is wanted any more.
+  /// A reach beyond which nothing is wanted, not always the least.
+  [[nodiscard]] float bound() const { return worst_.reach(); }
+
+  /// The least reach beyond which nothing is wanted any more.
   [[nodiscard]] float worst_reach() {
     if (found_.size() < limits_.count) return limits_.reach;
     shrink();

@@ -46,19 +46,29 @@ class SampleBins {
   /// Less than the distance to any point outside the cube of bins of half edge r; infinite if there are none.
   [[nodiscard]] float distance_beyond(const Point& query, const std::array<int, 3>& centre, int r) const;
 
-  /// Shell r, the first one together with the bin in the middle.
+  /// Less than the distance along an axis from the query to a bin.
+  [[nodiscard]] float gap(const Point& query, std::size_t axis, int bin, int centre) const {
+    if (bin == centre) return 0.0f;
+    const float to_bin = bin > centre ? float(bin) * side_ - query.x[axis] : query.x[axis] - float(bin + 1) * side_;
+    return std::max(to_bin - slack_, 0.0f);
+  }
+
+  /// Shell r, the first one together with the bin in the middle. Rows out of reach are left out.
   template <class Metric>
   void visit_shell(const Point& query, const std::array<int, 3>& centre, int r, NearestNeighbours& nearest) const {
-    const int k_last = std::min(centre[2] + r, size_[2] - 1);
-    const int j_last = std::min(centre[1] + r, size_[1] - 1);
-    for (int k = std::max(centre[2] - r, 0); k <= k_last; ++k) {
-      for (int j = std::max(centre[1] - r, 0); j <= j_last; ++j) {
+    const int first = std::max(centre[0] - r, 0);
+    const int last = std::min(centre[0] + r, size_[0] - 1);
+    for (int k = std::max(centre[2] - r, 0); k <= std::min(centre[2] + r, size_[2] - 1); ++k) {
+      const float reach_z = Metric::axis(gap(query, 2, k, centre[2]));
+      for (int j = std::max(centre[1] - r, 0); j <= std::min(centre[1] + r, size_[1] - 1); ++j) {
+        const float reach_yz = Metric::join(Metric::axis(gap(query, 1, j, centre[1])), reach_z);
+        if (reach_yz > nearest.bound()) continue;
         if (r == 1 || std::abs(j - centre[1]) == r || std::abs(k - centre[2]) == r) {
-          visit_row<Metric>(query, std::max(centre[0] - r, 0), std::min(centre[0] + r, size_[0] - 1), j, k, nearest);
+          visit_row<Metric>(query, first, last, j, k, nearest);
           continue;
         }
-        if (centre[0] - r >= 0) visit_row<Metric>(query, centre[0] - r, centre[0] - r, j, k, nearest);
-        if (centre[0] + r < size_[0]) visit_row<Metric>(query, centre[0] + r, centre[0] + r, j, k, nearest);
+        if (centre[0] - r >= 0) visit_row<Metric>(query, first, first, j, k, nearest);
+        if (centre[0] + r < size_[0]) visit_row<Metric>(query, last, last, j, k, nearest);
       }
     }
   }

@@ -65,6 +65,36 @@ TEST(Fit, ReproducesALinearRamp) {
   EXPECT_LT(reading_error(volume, light, inside), 0.01);
 }
 
+// A wall of one and a half voxels, bright on one side and dark on the other: both sheets lie in neighbouring texels.
+// The fit must bleed clearly less than exact light at the texel centres, read trilinearly, does.
+TEST(Fit, BleedsLessThroughAThinWallThanTexelsDo) {
+  const double middle = 6.2;
+  const Volume volume =
+      make_volume({13, 9, 9}, Vec3(1.0), [&](const Vec3& p) { return -std::fabs(p.x + 0.1 * p.y - middle); });
+  const auto sides = [&](const Vec3& p, int) { return p.x + 0.1 * p.y < middle ? 1.0f : 0.2f; };
+  const Lattice texels = cell_lattice(volume.lattice());
+  SampleSet centres;
+  for (int q = 0; q < 12 * 8 * 8; ++q) {
+    const Vec3 p = Vec3(q % 12, q / 12 % 8, q / 96) + 0.5;
+    add_sample(centres, volume, p, {sides(p, 0)});
+  }
+  SampleSet sheets;
+  for (int q = 0; q < 400; ++q) {
+    RandomStream random(5, std::uint64_t(q));
+    const double y = 1.0 + 6.0 * random.uniform_double();
+    const double x = middle - 0.1 * y + (q % 2 == 0 ? 0.4 : -0.4);
+    const Vec3 p(x, y, 1.0 + 6.0 * random.uniform_double());
+    add_sample(sheets, volume, p, {sides(p, 0)});
+  }
+  const double direct =
+      reading_error(volume, resamplers().create("direct")->resample(volume, centres, texels, {}).grid, sheets);
+  const SampleSet scattered = random_samples(volume, 12 * 8 * 8 * 8, 1, sides);
+  const double fit = reading_error(volume, fill_unlit(fitted(volume, scattered, texels), {}), sheets);
+  RecordProperty("direct", std::to_string(direct));
+  RecordProperty("fit", std::to_string(fit));
+  EXPECT_LT(fit, direct);
+}
+
 // Light that is a function of the isovalue, faster than texels can follow: a slope over the isovalue can.
 TEST(Fit, FollowsLightThatChangesWithTheIsovalue) {
   const Volume volume =

@@ -22,7 +22,7 @@ class CellGrid final : public Resampler {
   }
 
  private:
-  static constexpr double kSamplesABin = 2.0;  ///< the fastest of 1 to 8 for k from 6 to 32
+  static constexpr double kSamplesABin = 1.0;  ///< the fastest of 1 to 3 for k up to 11, as fast as any for 32
 
   Options options_;
 };

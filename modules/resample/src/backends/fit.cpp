@@ -38,9 +38,9 @@ class Fit final : public Resampler {
   struct Options {
     bool slopes = true;
     bool near_field = true;
-    double value_prior = 0.03;
+    double value_prior = 0.1;
     double slope_prior = 0.03;
-    int iterations = 20;
+    int iterations = 12;
 
     void describe(OptionVisitor& option) {
       option("slopes", slopes, {.help = "a second number a texel: how its light changes with the isovalue"});
