@@ -1,45 +1,14 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <cmath>
 #include <memory>
 
 #include "commands.h"
 #include "companion.h"
+#include "registry_json.h"
 
 namespace isolux {
 namespace {
-
-nlohmann::json to_json(const OptionInfo& option) {
-  nlohmann::json json{{"name", option.name},
-                      {"type", option.type},
-                      {"default", option.default_value},
-                      {"allowed", option.allowed()},
-                      {"help", option.help}};
-  if (!option.unit.empty()) json["unit"] = option.unit;
-  if (!option.choices.empty()) json["choices"] = option.choices;
-  if (option.type == "int" || option.type == "number") {
-    if (std::isfinite(option.min)) json["min"] = option.min;
-    if (std::isfinite(option.max)) json["max"] = option.max;
-  }
-  return json;
-}
-
-template <class Stage>
-nlohmann::json to_json(const Registry<Stage>& registry) {
-  nlohmann::json backends = nlohmann::json::array();
-  for (const BackendInfo& info : registry.backends()) {
-    nlohmann::json backend{{"name", info.name},
-                           {"help", info.help},
-                           {"available", info.unavailable.empty()},
-                           {"default", info.is_default}};
-    if (!info.unavailable.empty()) backend["why_unavailable"] = info.unavailable;
-    backend["options"] = nlohmann::json::array();
-    for (const OptionInfo& option : info.options) backend["options"].push_back(to_json(option));
-    backends.push_back(backend);
-  }
-  return {{"stage", Stage::kStage}, {"backends", backends}};
-}
 
 void print(const nlohmann::json& stages) {
   for (const auto& stage : stages) {
@@ -71,9 +40,9 @@ void add_backends_command(CLI::App& program, Session& session) {
   command.callback([json, &session] {
     session.on_run([json, &session] {
       const Stages& stages = session.stages;
-      nlohmann::json all =
-          nlohmann::json::array({to_json(stages.readers), to_json(stages.extractors), to_json(stages.samplers),
-                                 to_json(stages.tracers), to_json(stages.resamplers)});
+      nlohmann::json all = nlohmann::json::array({stage_to_json(stages.readers), stage_to_json(stages.extractors),
+                                                  stage_to_json(stages.samplers), stage_to_json(stages.tracers),
+                                                  stage_to_json(stages.resamplers)});
       // The texture uploaders live in the viewer, the one program that links OpenGL.
       if (const auto uploaders = companion_json("isolux-view", "--uploaders")) all.push_back(*uploaders);
       if (*json) {

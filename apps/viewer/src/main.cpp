@@ -3,6 +3,7 @@
 #include <isolux/bake/scene_file.h>
 #include <isolux/bake/version.h>
 #include <isolux/core/error.h>
+#include <isolux/gl_texture/texture_uploader.h>
 #include <isolux/volume_io/read.h>
 
 #include <CLI/CLI.hpp>
@@ -19,6 +20,7 @@
 #include "app/window.h"
 #include "light_options.h"
 #include "parse.h"
+#include "registry_json.h"
 #include "session.h"
 #include "volume_options.h"
 
@@ -109,6 +111,14 @@ int view(int argc, char** argv) {
   CLI::App program("Looks at the isosurfaces of a volume, in local and in global light.", "isolux view");
   program.set_version_flag("--version", std::string("isolux ") + kVersion);
   words.add_to(program);
+  // `isolux backends`, which links no GL, asks here for the stage that does.
+  program.add_flag_callback(
+      "--uploaders",
+      [] {
+        fmt::print("{}\n", stage_to_json(uploaders()).dump());
+        throw CLI::Success();
+      },
+      "print the texture uploaders as JSON and leave");
   session.add_common_options(program);
   try {
     program.parse(argc, argv);

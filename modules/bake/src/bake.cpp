@@ -9,6 +9,8 @@
 #include <cmath>
 #include <utility>
 
+#include "standard_error.h"
+
 namespace isolux {
 namespace {
 
@@ -105,9 +107,7 @@ BakeResult bake(const Volume& volume, const Scene& scene, const BakeSettings& gi
   const SampleSet samples = settings.bounce_method == BounceMethod::kIterated
                                 ? iterate(volume, scene, std::move(sites), settings, *resampler, texels, run, result)
                                 : trace_paths(volume, scene, std::move(sites), settings, stages, run, result);
-  double variance = 0.0;
-  for (const float v : samples.variance) variance += double(v);
-  result.rmse_estimate = std::sqrt(variance / double(result.sites));
+  result.rmse_estimate = standard_error(samples.variance);
 
   const Stopwatch resample_watch;
   ResampledGrid partial = resampler->resample(volume, samples, texels, run);

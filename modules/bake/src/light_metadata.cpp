@@ -5,6 +5,7 @@
 #include <isolux/core/error.h>
 #include <isolux/volume_io/read.h>
 
+#include <cmath>
 #include <nlohmann/json.hpp>
 #include <optional>
 
@@ -59,8 +60,9 @@ LightFile make_light_file(BakeResult result, const Volume& volume, const Scene& 
                     {"isolux.scene", scene_to_json(scene)},
                     {"isolux.settings", settings_to_json(settings, run)},
                     {"isolux.volume_sha256", volume_sha256(volume)},
-                    {"isolux.iso_range", fmt::format("{}:{}", range.low, range.high)},
-                    {"isolux.rmse_estimate", fmt::format("{:.6g}", result.rmse_estimate)}};
+                    {"isolux.iso_range", fmt::format("{}:{}", range.low, range.high)}};
+  if (!std::isnan(result.rmse_estimate))
+    light.metadata["isolux.rmse_estimate"] = fmt::format("{:.6g}", result.rmse_estimate);
   light.grid = std::move(result.light);
   return light;
 }

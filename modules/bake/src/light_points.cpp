@@ -1,7 +1,8 @@
 #include <isolux/bake/light_points.h>
 
-#include <cmath>
 #include <utility>
+
+#include "standard_error.h"
 
 namespace isolux {
 
@@ -27,15 +28,13 @@ PointLight light_points(const Volume& volume, const Scene& scene, std::span<cons
   if (point_of_site.empty()) return light;
   const TraceResult traced = backend->trace(volume, scene, std::move(sites), settings, run);
   light.counters = traced.counters;
-  double variance = 0.0;
   const auto channels = std::size_t(traced.samples.channels);
   for (std::size_t s = 0; s < point_of_site.size(); ++s) {
     for (std::size_t c = 0; c < 3; ++c) {
       light.radiance[point_of_site[s]][int(c)] = traced.samples.radiance[s * channels + (channels == 3 ? c : 0)];
     }
-    variance += double(traced.samples.variance[s]);
   }
-  light.rmse_estimate = std::sqrt(variance / double(point_of_site.size()));
+  light.rmse_estimate = standard_error(traced.samples.variance);
   return light;
 }
 

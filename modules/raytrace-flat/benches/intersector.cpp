@@ -28,8 +28,7 @@ std::vector<SurfaceRay> surface_rays(const Volume& volume, int count, int rays_a
   const Vec3 last(volume.lattice().size - 1);
   std::vector<SurfaceRay> rays;
   for (int s = 0; s < count; ++s) {
-    const Vec3 origin(
-        Vec3f(last * Vec3(random.uniform_double(), random.uniform_double(), random.uniform_double())));
+    const Vec3 origin(Vec3f(last * Vec3(random.uniform_double(), random.uniform_double(), random.uniform_double())));
     const Vec3 normal = field.normal(origin, OuterSide::kLower, GradientKind::kCentralDifferences);
     const Frame frame = frame_about(normal);
     for (int r = 0; r < rays_a_site; ++r)

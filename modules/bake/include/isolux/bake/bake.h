@@ -26,7 +26,7 @@ enum class BounceMethod {
   kIterated,  ///< rays are traced once and their hits kept; light is read there from the last iterate of the grid
               ///< (LightLinks): several times cheaper, with the grid's own error as a small bias; does not use the
               ///< tracer
-  kPaths  ///< the tracer follows every path to its end: unbiased
+  kPaths      ///< the tracer follows every path to its end: unbiased
 };
 
 struct BakeSettings {
@@ -45,9 +45,10 @@ struct BakeResult {
   IlluminationGrid light;
   TraceCounters counters;
   std::size_t sites = 0;
-  int sweeps = 0;                         ///< of BounceMethod::kIterated
-  std::size_t unlit_texels = 0;           ///< filled from their lit neighbours
-  double rmse_estimate = 0.0;             ///< root mean squared standard error of e over the sites
+  int sweeps = 0;                ///< of BounceMethod::kIterated
+  std::size_t unlit_texels = 0;  ///< filled from their lit neighbours
+  double rmse_estimate =
+      0.0;  ///< root mean squared standard error of e over the sites; NaN if one ray a site says nothing of it
   std::map<std::string, double> seconds;  ///< by stage: sites, trace, bounces (of kIterated), resample
 };
 
