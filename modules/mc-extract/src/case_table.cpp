@@ -45,7 +45,7 @@ CellCase make_case(int inside, CaseTable::Winding winding) {
     for (EdgeTriangle triangle : triangulate(polygon)) {
       if (winding == CaseTable::Winding::kInwards) std::swap(triangle[1], triangle[2]);
       for (int i = 0; i < 3; ++i) {
-        const std::size_t corner = std::size_t(3 * result.triangles + i);
+        const std::size_t corner = std::size_t(3) * result.triangles + std::size_t(i);
         assert(corner < result.vertex.size());
         result.vertex[corner] = std::uint8_t(triangle[i]);
         if (triangle[i] % 4 == 0) result.owned[triangle[i] / 4] = std::int8_t(corner);
@@ -69,9 +69,9 @@ CaseTable::CaseTable(Winding winding) {
 }
 
 const CaseTable& case_table(CaseTable::Winding winding) {
-  static const CaseTable kOutwards(CaseTable::Winding::kOutwards);
-  static const CaseTable kInwards(CaseTable::Winding::kInwards);
-  return winding == CaseTable::Winding::kOutwards ? kOutwards : kInwards;
+  static const CaseTable outwards(CaseTable::Winding::kOutwards);
+  static const CaseTable inwards(CaseTable::Winding::kInwards);
+  return winding == CaseTable::Winding::kOutwards ? outwards : inwards;
 }
 
 }  // namespace isolux::mc

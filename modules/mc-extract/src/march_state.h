@@ -16,6 +16,12 @@
 /// cases.
 namespace isolux::mc {
 
+/// A word of a slab as one number, rising along rows: at most 1024 words a row.
+inline constexpr int kWordBits = 10;
+constexpr std::uint32_t pack_word(int row, int word) { return std::uint32_t(row) << kWordBits | std::uint32_t(word); }
+constexpr int row_of(std::uint32_t packed) { return int(packed >> kWordBits); }
+constexpr int word_of(std::uint32_t packed) { return int(packed & ((1U << kWordBits) - 1)); }
+
 /// For each kind of thing its number: within a slab (of a row's first) or in the mesh (of a slab's first).
 struct Counts {
   std::uint32_t vertex_x = 0;  ///< vertices on edges along x, y, z
@@ -53,7 +59,7 @@ struct MarchState {
 
   std::uint64_t* bits = nullptr;    ///< [nz][ny][words], and one word more
   Counts* rows = nullptr;           ///< [nz][ny], of rows with an active word: numbers within the slab
-  std::uint32_t* active = nullptr;  ///< [nz][ny * words]: a slab's words that hold anything, row * words + word, rising
+  std::uint32_t* active = nullptr;  ///< [nz][ny * words]: a slab's words that hold anything, packed, rising
   Slab* slabs = nullptr;            ///< [nz]
 
   [[nodiscard]] const std::uint64_t* row_bits(int j, int k) const {

@@ -138,8 +138,7 @@ void RowMarch::count_active(const Run& run, const BrickIndex* index, Connectivit
       const int layer = int(block.begin / kBlock);
       for (int j = 0; j < march_.ny; ++j)
         for (int word = 0; word < march_.words; ++word)
-          if (activity(word, j / BrickIndex::kHeight, layer) != 0)
-            candidates.push_back(std::uint32_t(j * march_.words + word));
+          if (activity(word, j / BrickIndex::kHeight, layer) != 0) candidates.push_back(pack_word(j, word));
       candidates.push_back(0);  // so that data() is something even where nothing is a candidate
     }
     for (int k = int(block.begin); k < int(block.end); ++k) {

@@ -31,12 +31,12 @@ void visit_slab(const MarchState& march, int k, const Visit& visit) {
   }
   const std::uint32_t* active = march.slab_active(k);
   for (std::uint32_t n = 0; n < slab.active_words;) {
-    const int j = int(active[n]) / march.words;
-    const int first_word = int(active[n]) % march.words;
-    while (n < slab.active_words && int(active[n]) / march.words == j) ++n;
-    const int last_word = int(active[n - 1]) % march.words;
+    const int j = row_of(active[n]);
+    const int first_word = word_of(active[n]);
+    while (n < slab.active_words && row_of(active[n]) == j) ++n;
+    const int last_word = word_of(active[n - 1]);
     const Counts& start = march.slab_rows(k)[j];
-    const Counts& end = n < slab.active_words ? march.slab_rows(k)[int(active[n]) / march.words] : slab.total;
+    const Counts& end = n < slab.active_words ? march.slab_rows(k)[row_of(active[n])] : slab.total;
     if (j == 0) visit(first.face_y + start.face_y, first.face_y + end.face_y, Side::kAbove);
     if (j + 1 == march.ny) {
       visit(first.face_y + start.face_y, first.face_y + end.face_y, Side::kBelow);

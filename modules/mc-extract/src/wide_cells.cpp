@@ -89,12 +89,12 @@ void for_each_cell(const MarchState& march, int k, const CaseTable& cases, const
   const std::uint32_t* active = march.slab_active(k);
   const std::uint32_t count = march.slabs[k].active_words;
   for (std::uint32_t n = 0; n < count;) {
-    const int j = int(active[n]) / march.words;
+    const int j = row_of(active[n]);
     if (j + 1 >= march.ny) return;
     RowCounters counters(march, j, k);
-    const std::uint32_t row_end = std::uint32_t((j + 1) * march.words);
+    const std::uint32_t row_end = pack_word(j + 1, 0);
     for (; n < count && active[n] < row_end; ++n) {
-      const int word = int(active[n]) - j * march.words;
+      const int word = word_of(active[n]);
       const WordBits bits(march, j, k, word);
       for (std::uint64_t mixed = bits.mixed(march.cell_mask(word)); mixed != 0; mixed &= mixed - 1)
         visit(cases[bits.corners(std::countr_zero(mixed))], counters);

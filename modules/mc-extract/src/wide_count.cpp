@@ -147,23 +147,21 @@ void count_slab_wide(MarchState& march, int k, const std::uint32_t* candidates, 
   Counts* rows = march.slab_rows(k);
   std::uint32_t found = 0;
   int last_row = -1;
-  const auto visit = [&](int j, int word, std::uint32_t number) HWY_ATTR {
+  const auto visit = [&](int j, int word) HWY_ATTR {
     const WordBits bits(march, j, k, word);
     const auto& [a, b, c, d] = bits.here;
     const std::uint64_t differing = ((a | b | c | d) & ~(a & b & c & d)) | bits.mixed(march.cell_mask(word));
     if (differing == 0) return;
     if (j != last_row) rows[j] = counts;
     last_row = j;
-    active[found++] = number;
+    active[found++] = pack_word(j, word);
     count_word<kConnectivity>(march, j, k, word, bits, cases, counts);
   };
   if (candidates != nullptr) {
-    for (std::size_t n = 0; n < candidate_count; ++n)
-      visit(int(candidates[n]) / march.words, int(candidates[n]) % march.words, candidates[n]);
+    for (std::size_t n = 0; n < candidate_count; ++n) visit(row_of(candidates[n]), word_of(candidates[n]));
   } else {
-    std::uint32_t number = 0;
     for (int j = 0; j < march.ny; ++j)
-      for (int word = 0; word < march.words; ++word) visit(j, word, number++);
+      for (int word = 0; word < march.words; ++word) visit(j, word);
   }
   march.slabs[k].active_words = found;
   march.slabs[k].total = counts;

@@ -29,7 +29,7 @@ void classify_bricks(MarchState& march, const BrickRows& rows, int word, unsigne
 /// one of them is NaN.
 void find_range(const Volume& volume, const Index3& first, const Index3& last, float& low, float& high);
 
-/// Finds the words of slab k that hold anything, among `candidates` (row * words + word, rising) or all if there are
+/// Finds the words of slab k that hold anything, among `candidates` (packed, rising) or all if there are
 /// none given, and counts what its rows hold.
 void count_slab(MarchState& march, int k, const std::uint32_t* candidates, std::size_t candidate_count,
                 Connectivity connectivity);

@@ -198,8 +198,8 @@ void make_vertices_wide(const MarchState& march, int k, const VertexFrame& frame
   const VertexMaker<2> make_z(march, k, frame);
   const std::uint32_t* active = march.slab_active(k);
   for (std::uint32_t n = 0; n < slab.active_words; ++n) {
-    const int j = int(active[n]) / march.words;
-    const int word = int(active[n]) % march.words;
+    const int j = row_of(active[n]);
+    const int word = word_of(active[n]);
     const WordBits bits(march, j, k, word);
     along_x.add((bits.here[0] ^ bits.next[0]) & march.cell_mask(word), j, word);
     along_y.add(bits.here[0] ^ bits.here[1], j, word);

@@ -30,8 +30,8 @@ void write_bytes(const std::vector<char>& bytes, const std::string& path) {
 }  // namespace mc
 
 const std::vector<std::string>& mesh_extensions() {
-  static const std::vector<std::string> kExtensions = {".ply", ".glb", ".obj", ".off", ".stl"};
-  return kExtensions;
+  static const std::vector<std::string> extensions = {".ply", ".glb", ".obj", ".off", ".stl"};
+  return extensions;
 }
 
 void write_mesh(const IsoMesh& mesh, std::span<const Rgb8> colours, const std::string& path) {
