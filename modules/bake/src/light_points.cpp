@@ -1,10 +1,24 @@
 #include <isolux/bake/light_points.h>
 
+#include <cmath>
 #include <utility>
 
 #include "standard_error.h"
 
 namespace isolux {
+namespace {
+
+/// A mesh's vertices lie on grid edges, and the rounding of their world coordinates puts them beside: coordinates
+/// within 1e-4 of a grid plane are put back on it. Elsewhere a shift of so little is beyond what the light tells.
+Vec3f onto_grid(Vec3 index) {
+  for (int a = 0; a < 3; ++a) {
+    const double whole = std::round(index[a]);
+    if (std::fabs(index[a] - whole) < 1e-4) index[a] = whole;
+  }
+  return Vec3f(index);
+}
+
+}  // namespace
 
 PointLight light_points(const Volume& volume, const Scene& scene, std::span<const Vec3f> world_positions,
                         const TraceSettings& settings, const BackendChoice& tracer, const Stages& stages,
@@ -15,7 +29,7 @@ PointLight light_points(const Volume& volume, const Scene& scene, std::span<cons
   Sites sites;
   std::vector<std::size_t> point_of_site;
   for (std::size_t i = 0; i < world_positions.size(); ++i) {
-    const Vec3f position(volume.lattice().frame.index(Vec3(world_positions[i])));
+    const Vec3f position = onto_grid(volume.lattice().frame.index(Vec3(world_positions[i])));
     const Vec3 normal = field.normal(Vec3(position), scene.outer, settings.gradient);
     if (normal == Vec3(0.0)) continue;
     sites.positions.push_back(position);
