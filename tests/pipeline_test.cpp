@@ -2,6 +2,8 @@
 #include <gtest/gtest.h>
 #include <isolux/bake.h>
 #include <isolux/core/error.h>
+#include <isolux/resample/light_reader.h>
+#include <isolux/volume_io/light_file.h>
 #include <isolux/volume_io/read.h>
 
 #include <cmath>
@@ -121,6 +123,31 @@ TEST(LightPoints, TellTheTextureWhatItShouldSay) {
   // Noise of 256 rays is at most .03 (binomial at e = 1/2), less where stratified; the trilinear balls of 32^3 differ
   // by .01.
   EXPECT_LT(std::sqrt(sum / double(count)), 0.03);
+}
+
+TEST(LightFile, KeepsWhatLetsLightBeReadFinely) {
+  const Volume volume = read_volume("gen:two-spheres:16");
+  BakeSettings settings;
+  settings.sampler.name = "stratified";
+  settings.resampler.name = "fit";
+  settings.samples = 8 * 15 * 15 * 15;
+  settings.trace.rays = 4;
+  settings.trace.bounces = 0;
+  LightFile light;
+  light.grid = bake(volume, Scene{}, settings, builtin_stages(), {}).light;
+  ASSERT_FALSE(light.grid.detail.slopes.empty());
+  ASSERT_FALSE(light.grid.detail.near_field.empty());
+  const std::string path = testing::TempDir() + "detail.nrrd";
+  write_light(light, path, volume.space);
+  const LightFile back = read_light(path);
+  EXPECT_EQ(back.grid.values, light.grid.values);
+  EXPECT_EQ(back.grid.detail.slopes, light.grid.detail.slopes);
+  const LightReader before(volume, light.grid);
+  const LightReader after(volume, back.grid);
+  for (const double x : {3.1, 7.4, 11.9}) {
+    EXPECT_EQ(before.at_index({x, 6.3, 8.8}).x,
+              after.at_index({x, 6.3, 8.8}).x);  // numbers are written to all their digits
+  }
 }
 
 TEST(SceneFile, SurvivesARoundTrip) {

@@ -1,8 +1,10 @@
 #include <fmt/format.h>
 #include <isolux/bake/light_metadata.h>
 #include <isolux/bake/light_points.h>
+#include <isolux/mc_extract/measure_mesh.h>
 #include <isolux/mc_extract/write_mesh.h>
 #include <isolux/render/image.h>
+#include <isolux/resample/light_reader.h>
 #include <isolux/volume_io/atomic_file.h>
 
 #include <memory>
@@ -26,6 +28,9 @@ struct Options {
   std::string outer;
   std::vector<std::string> set;
   bool exact_light = false;
+  bool cap = false;
+  std::size_t min_component = 0;
+  std::string normals = "gradient";
 };
 
 std::vector<Vec3f> positions(const IsoMesh& mesh) {
@@ -54,10 +59,13 @@ std::vector<Rgb8> exact_colours(const IsoMesh& mesh, const Volume& volume, const
   return colours;
 }
 
-std::vector<Rgb8> baked_colours(const IsoMesh& mesh, const LightFile& light, float isovalue) {
+std::vector<Rgb8> baked_colours(const IsoMesh& mesh, const Volume& volume, const LightFile& light, float isovalue) {
+  const LightReader reader(volume, light.grid);
   const Vec3f albedo = light_albedo(light, isovalue);
   std::vector<Rgb8> colours;
-  for (const Vec3f& p : positions(mesh)) colours.push_back(colour(albedo * light.grid.at_world(Vec3(p))));
+  for (const Vec3f& p : positions(mesh)) {
+    colours.push_back(colour(albedo * reader.at_index(volume.lattice().frame.index(Vec3(p)), double(isovalue))));
+  }
   return colours;
 }
 
@@ -81,14 +89,27 @@ void run_extract(const Options& options, Session& session) {
   const OuterSide outer = outer_side(options, light ? light_outer(*light) : scene.outer);
   const auto extractor = session.stages.extractors.create(choice.name, choice.settings);
   const IsoMesh mesh = session.timed("extract", [&] {
-    return extractor->extract(volume, {.isovalue = options.isovalue, .outer = outer}, session.run);
+    return extractor->extract(volume,
+                              {.isovalue = options.isovalue,
+                               .outer = outer,
+                               .normals = options.normals == "faces" ? NormalKind::kFaces : NormalKind::kGradient,
+                               .cap = options.cap ? CapKind::kBox : CapKind::kNone,
+                               .min_component = options.min_component},
+                              session.run);
   });
   std::vector<Rgb8> colours;
-  if (light) colours = session.timed("light", [&] { return baked_colours(mesh, *light, options.isovalue); });
+  if (light) colours = session.timed("light", [&] { return baked_colours(mesh, volume, *light, options.isovalue); });
   if (options.exact_light) colours = exact_colours(mesh, volume, scene, options, session);
   session.timed("write", [&] {
-    write_atomically_by_name(options.output, [&](const std::string& path) { write_ply(mesh, colours, path); });
+    write_atomically_by_name(options.output, [&](const std::string& path) { write_mesh(mesh, colours, path); });
   });
+  const MeshMeasures measures = session.timed("measure", [&] { return measure_mesh(mesh); });
+  session.report["area"] = measures.area;
+  session.report["volume"] = measures.volume;
+  session.report["euler_number"] = measures.euler_number;
+  session.report["components"] = measures.components;
+  session.report["boundary_edges"] = measures.boundary_edges;
+  session.report["zero_area_triangles"] = measures.zero_area_triangles;
   session.report["triangles"] = mesh.n_faces();
   session.report["vertices"] = mesh.n_vertices();
   session.report["settings"] = {{"isovalue", options.isovalue},
@@ -103,7 +124,9 @@ void add_extract_command(CLI::App& program, Session& session) {
   const auto options = std::make_shared<Options>();
   options->volume.add_to(command);
   command.add_option("--iso", options->isovalue, "isovalue")->required()->type_name("H");
-  command.add_option("-o,--output", options->output, "the mesh to write")->required()->type_name("MESH.ply");
+  command.add_option("-o,--output", options->output, "the mesh to write: .ply, .glb, .obj, .off or .stl")
+      ->required()
+      ->type_name("MESH.ply");
   options->light.add_to(command);
   command.add_flag("--exact-light", options->exact_light,
                    "trace the light at the vertices instead of reading it from a file");
@@ -112,6 +135,11 @@ void add_extract_command(CLI::App& program, Session& session) {
       .add_option("--outer", options->outer,
                   "the side that is outside: lower or higher values (default: what the light or scene says)")
       ->check(CLI::IsMember({"lower", "higher"}));
+  command.add_flag("--cap", options->cap, "close the surface where it meets the box");
+  command.add_option("--min-component", options->min_component, "leave out connected parts of fewer triangles")
+      ->type_name("N");
+  command.add_option("--normals", options->normals, "from the field's gradient (default) or from the faces")
+      ->check(CLI::IsMember({"gradient", "faces"}));
   command.add_option("--backend", options->backend, "extractor backend")->type_name("NAME");
   command.add_option("--set", options->set, "an option of the extractor")->type_name("key=value");
   session.add_common_options(command);

@@ -2,6 +2,7 @@
 #include <fmt/ostream.h>
 #include <isolux/core/error.h>
 #include <isolux/core/field.h>
+#include <isolux/resample/light_reader.h>
 #include <isolux/volume_io/atomic_file.h>
 
 #include <algorithm>
@@ -83,6 +84,7 @@ void run_probe(const Options& options, Session& session) {
   const LightFile light = options.light.read(volume, session);
   const std::vector<Vec3> points = session.timed("read", [&] { return read_points(options.points); });
   const TrilinearField field(volume);
+  const LightReader reader(volume, light.grid);
   std::size_t outside = 0;
   session.timed("write", [&] {
     write_atomically(options.output, [&](std::ostream& out) {
@@ -91,7 +93,7 @@ void run_probe(const Options& options, Session& session) {
         const auto index = inside(volume.lattice(), p);
         if (!index) ++outside;
         const double nan = std::numeric_limits<double>::quiet_NaN();
-        const Vec3f e = index ? light.grid.at_world(p) : Vec3f(float(nan));
+        const Vec3f e = index ? reader.at_index(*index) : Vec3f(float(nan));
         fmt::print(out, "{},{},{},{:.9g}", p.x, p.y, p.z, index ? field.value(*index) : nan);
         for (int c = 0; c < light.grid.channels; ++c) fmt::print(out, ",{:.9g}", e[c]);
         out << '\n';

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 #include <isolux/bake/light_metadata.h>
 #include <isolux/render/render.h>
+#include <isolux/resample/light_reader.h>
 #include <isolux/volume_io/atomic_file.h>
 
 #include <cmath>
@@ -56,7 +57,11 @@ void run_render(const Options& options, Session& session) {
   Image image = session.timed("render", [&]() -> Image {
     if (mode == "normal") return draw(normal_shader());
     if (mode == "local") return draw(local_shader(albedo));
-    Image global = draw(global_shader(light->grid, albedo));
+    const LightReader reader(volume, light->grid);
+    const LightAt at = [&](const SurfacePoint& point) {
+      return reader.at_index(point.index, double(options.isovalue));
+    };
+    Image global = draw(global_shader(at, albedo));
     expose(global, options.exposure);
     return mode == "both" ? side_by_side(draw(local_shader(albedo)), global, 4, Vec3f(1.0f)) : global;
   });

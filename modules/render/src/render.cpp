@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <glm/geometric.hpp>
+#include <utility>
 
 namespace isolux {
 namespace {
@@ -87,10 +88,10 @@ Image render(const Volume& volume, const Camera& camera, const RenderSettings& s
   return image;
 }
 
-Shader global_shader(const IlluminationGrid& light, const Vec3f& albedo) {
-  return [&light, albedo](const SurfacePoint& point) {
+Shader global_shader(LightAt light, const Vec3f& albedo) {
+  return [light = std::move(light), albedo](const SurfacePoint& point) {
     if (!point.outside) return albedo * (0.1f * local_light(point));
-    return albedo * light.at_world(point.world);
+    return albedo * light(point);
   };
 }
 

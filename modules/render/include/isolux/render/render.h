@@ -1,7 +1,6 @@
 #pragma once
 
 #include <isolux/core/field.h>
-#include <isolux/core/illumination_grid.h>
 #include <isolux/core/run.h>
 #include <isolux/core/volume.h>
 #include <isolux/render/camera.h>
@@ -38,9 +37,12 @@ struct RenderSettings {
 [[nodiscard]] Image render(const Volume& volume, const Camera& camera, const RenderSettings& settings,
                            const Shader& shader, const Run& run);
 
+/// e at a surface point.
+using LightAt = std::function<Vec3f(const SurfacePoint&)>;
+
 /// The baked light on a diffuse surface: albedo times e. The inner side, which has no light of its own, is drawn in a
 /// dim local shade.
-[[nodiscard]] Shader global_shader(const IlluminationGrid& light, const Vec3f& albedo);
+[[nodiscard]] Shader global_shader(LightAt light, const Vec3f& albedo);
 
 /// What graphics hardware shows without global light: a headlight and a hemisphere of sky, no shadows.
 [[nodiscard]] Shader local_shader(const Vec3f& albedo);

@@ -19,8 +19,10 @@ struct LightWriteOptions {
 };
 
 /// Writes NRRD0005: float32, little endian, 1 channel as 3 axes or 3 channels as 4 with the channel axis first
-/// (`kinds: vector domain domain domain`), `sizes:` before `space:`, metadata as key/value pairs (newlines escaped as
-/// the NRRD definition says). Written beside the target and renamed. \throw IoError
+/// (`kinds: vector domain domain domain`); a light with slopes has them behind the values on that axis (2 or 6), and
+/// what else its detail holds in `isolux.near_field` and `isolux.light_ceiling`; `sizes:` before `space:`, metadata as
+/// key/value pairs (newlines escaped as the NRRD definition says). Written beside the target and renamed. \throw
+/// IoError
 void write_light(const LightFile& light, const std::string& path, const std::string& space,
                  const LightWriteOptions& options = {});
 
