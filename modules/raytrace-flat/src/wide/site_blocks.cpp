@@ -14,7 +14,7 @@ namespace isolux::wide {
 namespace {
 
 /// Buckets whose sites are gathered and sorted at once: few, to save memory; several, to save passes over the sites.
-constexpr std::size_t kBucketsAGroup = 16;
+constexpr std::size_t kBucketsAGroup = 4;
 constexpr std::size_t kSitesAPass = 65536;
 
 /// Bits of a cell index spread to every third place (for the Morton order).
