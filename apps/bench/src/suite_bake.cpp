@@ -58,7 +58,7 @@ Target traced_target(const std::string& id, const Volume& volume, float isovalue
       volume, {.texels = cell_lattice(volume.lattice()), .count = count}, run);
   for (const Vec3f& p : sites.positions) target.points.emplace_back(volume.lattice().frame.world(Vec3(p)));
   const PointLight light =
-      light_points(volume, target.scene, target.points, {.rays = context.pick(1024, 8192), .bounces = 0},
+      light_points(volume, target.scene, target.points, {.rays = context.pick(512, 8192), .bounces = 0},
                    {.name = "scalar", .settings = {}}, context.stages, run);
   for (const Vec3f& e : light.radiance) target.e.push_back(double(e.x));
   target.reference_error = light.rmse_estimate;
@@ -111,7 +111,12 @@ Measured coupled(const Target& target, int surfaces, int rays, const SuiteContex
       tracer
           ->trace(target.volume, target.scene, std::move(sites), {.rays = rays, .bounces = target.bounces}, context.run)
           .samples;
-  ResampledGrid partial = context.stages.resamplers.create("cell_grid", {{"k", "4"}})
+  // Samples lie on few surfaces, far from most texels: a tree finds them, a grid searches emptiness.
+  const auto backends = context.stages.resamplers.backends();
+  const bool has_tree = std::any_of(backends.begin(), backends.end(), [](const BackendInfo& info) {
+    return info.name == "cgal_kdtree" && info.unavailable.empty();
+  });
+  ResampledGrid partial = context.stages.resamplers.create(has_tree ? "cgal_kdtree" : "cell_grid", {{"k", "4"}})
                               ->resample(target.volume, samples, request.texels, context.run);
   const double seconds = watch.seconds();
   return {.seconds = seconds, .error = error_of(partial.grid, target, context)};
@@ -148,11 +153,11 @@ Plot curves(const Target& target, const SuiteContext& context, Table& table) {
           : std::string("The reference is a closed form."));
   Series ours{.name = "isolux", .points = {}};
   Series fine{.name = "isolux, 2 texels a cell axis", .points = {}};
-  for (int rays = 4; rays <= context.pick(256, 1024); rays *= 4) {
+  for (int rays = 4; rays <= context.pick(64, 1024); rays *= 4) {
     BakeSettings settings;
     settings.trace.rays = rays;
     add(table, ours, target, fmt::format("{} rays", rays), baked(target, settings, context));
-    if (rays > context.pick(16, 256)) continue;
+    if (rays > context.pick(4, 256)) continue;
     settings.texels = (target.volume.lattice().size - 1) * 2;
     add(table, fine, target, fmt::format("{} rays", rays), baked(target, settings, context));
   }
@@ -214,8 +219,8 @@ SuiteReport run_bake(const SuiteContext& context) {
              .sentence =
                  "64 rays each. One surface means extraction, Embree's tree and rays at its vertices, compared at the "
                  "vertices; past the last column's number of isovalues the bake of all level sets is the cheaper one."};
-  const int n = context.pick(33, 65);
-  const auto count = std::size_t(context.pick(1000, 4000));
+  const int n = context.pick(25, 65);
+  const auto count = std::size_t(context.pick(500, 4000));
   std::vector<Target> targets;
   targets.push_back(analytic_target(plane_under_ball(), n, count, context));
   targets.push_back(analytic_target(integrating_sphere(), n, count, context));

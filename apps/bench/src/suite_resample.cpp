@@ -85,7 +85,7 @@ SuiteReport run_resample(const SuiteContext& context) {
       {plane_in_the_sun(), 0.0, "shadow", "shadow edges"},
       {integrating_sphere(), 0.0, "sphere", "integrating sphere"},
   };
-  const int n = context.pick(33, 97);
+  const int n = context.pick(25, 97);
   for (const Case& test : cases) {
     context.say(test.title);
     const Volume volume = sample_analytic_field(test.truth.field, n);
@@ -96,11 +96,11 @@ SuiteReport run_resample(const SuiteContext& context) {
     plot.sentence = fmt::format(
         "About {} low-discrepancy sites with exact e{}, carried to {}^3 texels; along a curve the number of neighbours "
         "grows, bars are 95 % bootstrap intervals.",
-        number_text(context.pick(8000.0, 200000.0)), test.noise > 0.0 ? " plus noise" : "", n - 1);
+        number_text(context.pick(4000.0, 200000.0)), test.noise > 0.0 ? " plus noise" : "", n - 1);
     for (const std::string sampler : {"random", "stratified", "low_discrepancy"}) {
-      const auto wanted = std::size_t(context.pick(8000, 200000));
-      const SampleSet samples = exact_samples(
-          test.truth, volume, known_sites(test.truth, volume, sampler, wanted, context), test.noise, context.run.seed);
+      const auto wanted = std::size_t(context.pick(4000, 200000));
+      const SampleSet samples =
+          exact_samples(test.truth, volume, all_sites(volume, sampler, wanted, context), test.noise, context.run.seed);
       for (const Method& method : methods(context)) {
         // Backends of one method agree to rounding: one of them is enough beside the first case.
         const bool same_method = method.backend == "brute_force" || method.backend == "cgal_kdtree";

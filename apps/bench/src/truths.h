@@ -18,12 +18,15 @@ struct Truth {
   std::string field;  ///< `gen:` name
   Scene scene{};
   int bounces = 0;
-  std::optional<ValueRange> isovalues{};                  ///< the level sets for which e is known
-  std::function<std::optional<double>(const Vec3&)> e{};  ///< at a point of [0,1]^3; none where no closed form is known
+  std::optional<ValueRange> isovalues{};       ///< the level sets for which e is known
+  std::function<bool(const Vec3&)> known{};    ///< whether `light` is e at this point of [0,1]^3
+  std::function<double(const Vec3&)> light{};  ///< e where it is known, its continuation elsewhere
+
+  [[nodiscard]] std::optional<double> e(const Vec3& p) const {
+    return known(p) ? std::optional(light(p)) : std::nullopt;
+  }
 };
 
-/// Two equal balls in uniform light (view factor of a ball).
-[[nodiscard]] Truth two_balls();
 /// The plane under a ball in uniform light.
 [[nodiscard]] Truth plane_under_ball();
 /// The plane under a ball in the sun: a shadow with a sharp edge on every level set.
@@ -31,10 +34,14 @@ struct Truth {
 /// The open integrating sphere, albedo .8, all bounces.
 [[nodiscard]] Truth integrating_sphere();
 
+/// `count` sites anywhere in the box by `sampler`.
+[[nodiscard]] Sites all_sites(const Volume& volume, const std::string& sampler, std::size_t count,
+                              const SuiteContext& context);
 /// `count` sites of the volume by `sampler`, without those where e is unknown.
 [[nodiscard]] Sites known_sites(const Truth& truth, const Volume& volume, const std::string& sampler, std::size_t count,
                                 const SuiteContext& context);
-/// Their exact e with Gaussian noise of this standard deviation, as a tracer would have found it.
+/// The light at sites anywhere in the box, with Gaussian noise of this standard deviation, as a tracer would have found
+/// it.
 [[nodiscard]] SampleSet exact_samples(const Truth& truth, const Volume& volume, Sites sites, double noise,
                                       std::uint64_t seed);
 
