@@ -13,7 +13,7 @@
 namespace isolux::viewer {
 namespace {
 
-constexpr Vec3f kBackground(0.735f);  // the sRGB code of a linear 1/2
+constexpr Vec3f kBackground(0.485f);  // the sRGB code of the linear 0.2 of isolux render
 constexpr Rgba8 kInk{20, 22, 26, 255};
 constexpr Rgba8 kPaper{250, 250, 248, 215};
 constexpr Rgba8 kTrack{20, 22, 26, 110};
