@@ -21,8 +21,9 @@ namespace isolux::viewer {
 namespace {
 
 Volume volume_of(std::vector<float> values) {
+  const Lattice lattice{.size = {int(values.size()) / 4, 2, 2}, .frame = {}};
   Volume volume;
-  volume.values = Grid<float>({.size = {int(values.size()) / 4, 2, 2}, .frame = {}}, std::move(values));
+  volume.values = Grid<float>(lattice, std::move(values));
   return volume;
 }
 

@@ -29,8 +29,10 @@ class Raycaster {
     const int n = settings_.supersampling;
     Vec3f sum(0.0f);
     for (int s = 0; s < n * n; ++s) {
-      const double px = x + (s % n + random.uniform_double()) / n;
-      const double py = y + (double(s / n) + random.uniform_double()) / n;
+      const int column = s % n;
+      const int row = s / n;
+      const double px = x + (column + random.uniform_double()) / n;
+      const double py = y + (row + random.uniform_double()) / n;
       sum += radiance((2.0 * px - settings_.width) / settings_.height, 1.0 - 2.0 * py / settings_.height);
     }
     return sum / float(n * n);

@@ -127,7 +127,7 @@ void Occupancy::build(const CellCodes& codes, int index, const Run& run) {
 }
 
 void Occupancy::build_distances() {
-  static const std::array<std::uint64_t, 256> kSpread = make_spread();
+  static const std::array<std::uint64_t, 256> spread = make_spread();
   const auto nx = std::size_t(bricks_.x);
   const std::size_t rows = std::size_t(bricks_.y) * std::size_t(bricks_.z);
   const std::size_t row = (nx + 63) / 64;
@@ -154,7 +154,7 @@ void Occupancy::build_distances() {
         any_far = true;
         std::uint64_t sum = 0;
         std::memcpy(&sum, out + i, 8);
-        sum += kSpread[far];  // no byte reaches 256, so nothing is carried
+        sum += spread[far];  // no byte reaches 256, so nothing is carried
         std::memcpy(out + i, &sum, 8);
       }
     }

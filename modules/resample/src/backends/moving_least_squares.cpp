@@ -49,7 +49,9 @@ class MovingLeastSquares final : public Resampler {
     parallel_blocks(texels.count(), 512, run, "resample", [&](const Block& block) {
       std::vector<Neighbour> found;
       for (std::size_t t = block.begin; t < block.end; ++t) {
-        const Vec3f index(to_volume.world({double(t % nx), double(t / nx % ny), double(t / nx / ny)}));
+        const std::size_t j = t / nx % ny;
+        const std::size_t k = t / (nx * ny);
+        const Vec3f index(to_volume.world({double(t % nx), double(j), double(k)}));
         const float isovalue = space.uses_isovalues() ? float(field.value(Vec3(index))) : 0.0f;
         const Point query = space.point(index, isovalue);
         bins.search<EuclideanMetric>(query, space.limits(), found);
