@@ -199,12 +199,13 @@ Table frame_rates(const SuiteContext& context) {
   for (const Row& row : rows) {
     const Camera camera = orbit_camera(row.volume.lattice(), 30.0, 20.0, 1.0);
     const IlluminationGrid light(cell_lattice(row.volume.lattice()), 1);
+    const LightAt read = [&light](const SurfacePoint& point) { return light.at_world(point.world); };
     const RenderSettings settings{.width = 256, .height = 256, .supersampling = 1, .isovalue = row.isovalue};
     const auto rate = [&](const Shader& shader) {
       return 1.0 / timed([&] { (void)render(row.volume, camera, settings, shader, context.run); }, 9, 1.5).value;
     };
     table.rows.push_back(
-        {row.name, row.local, row.texture, rate(local_shader(Vec3f(0.8f))), rate(global_shader(light, Vec3f(0.8f)))});
+        {row.name, row.local, row.texture, rate(local_shader(Vec3f(0.8f))), rate(global_shader(read, Vec3f(0.8f)))});
   }
   return table;
 }
