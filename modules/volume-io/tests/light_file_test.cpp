@@ -46,7 +46,8 @@ TEST(LightFile, HasTheLayoutThatOtherReadersNeed) {
 
 TEST(LightFile, RefusesOtherLayoutsAndKeys) {
   const test::TemporaryFolder folder;
-  const auto four = folder.write("l.nrrd", "NRRD0004\ntype: uint8\ndimension: 4\nsizes: 4 1 1 1\nencoding: raw\n\nabcd");
+  const auto four =
+      folder.write("l.nrrd", "NRRD0004\ntype: uint8\ndimension: 4\nsizes: 4 1 1 1\nencoding: raw\n\nabcd");
   EXPECT_THAT(test::error_of([&] { (void)read_light(four); }), HasSubstr("a light file has 3 axes"));
   LightFile light = example(1);
   light.grid.values[3] = std::numeric_limits<float>::infinity();
