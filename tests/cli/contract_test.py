@@ -105,6 +105,9 @@ class Bake(CommandLineTest):
             self.assertEqual(self.read("one.nrrd"), self.read("three.nrrd"))
             self.assertNotEqual(nrrd_header(self.path("one.nrrd"))[2], nrrd_header(self.path("other.nrrd"))[2])
 
+    def test_more_threads_than_cores_are_no_matter(self):
+        self.assertEqual(self.bake("--threads", 64).stderr, "")
+
     def test_texels_lattice_and_compression(self):
         self.bake("--texels", "5x6x7")
         self.assertEqual(nrrd_header(self.path("light.nrrd"))[0]["sizes"], "5 6 7")

@@ -25,7 +25,7 @@ void parallel_blocks(std::size_t count, std::size_t block_size, const Run& run, 
 /// Number of blocks that parallel_blocks makes.
 [[nodiscard]] std::size_t block_count(std::size_t count, std::size_t block_size);
 
-/// The threads a run uses: run.threads, or all of the machine.
+/// The threads a run uses: run.threads, or one for each core that this process may use.
 [[nodiscard]] int thread_count(const Run& run);
 
 }  // namespace isolux
