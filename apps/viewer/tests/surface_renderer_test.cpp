@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 #include <isolux/core/random.h>
 #include <isolux/render/image.h>
+#include <isolux/resample/light_reader.h>
 #include <isolux/volume_io/read.h>
 
 #include <array>
@@ -81,21 +82,40 @@ IlluminationGrid varied_light(const Lattice& texels, int channels) {
   return light;
 }
 
-class LitPixels : public testing::TestWithParam<std::pair<bool, int>> {};
+/// The light with slopes and a near field that change it by some tenths.
+IlluminationGrid detailed(IlluminationGrid light) {
+  for (std::size_t i = 0; i < light.values.size(); ++i)
+    light.detail.slopes.push_back(0.8f * float(std::cos(0.01 * double(i))));
+  light.detail.near_field = {{.step = 1.0f, .mean = 0.9f, .weight = {0.3f, 0.2f, 0.1f}},
+                             {.step = -4.0f, .mean = -0.5f, .weight = {-0.1f, 0.2f, 0.3f}}};
+  light.detail.ceiling = 0.95f;
+  return light;
+}
+
+struct LightKind {
+  bool at_voxels = false;
+  int channels = 1;
+  bool detail = false;
+};
+
+class LitPixels : public testing::TestWithParam<LightKind> {};
 
 // What the graphics card shows at a pixel is the light that the processor looks up at the point under it.
 TEST_P(LitPixels, AgreeWithTheLookUpOnTheProcessor) {
   const test::EglContext context;
   if (!context) GTEST_SKIP() << context.why();
-  const auto [at_voxels, channels] = GetParam();
+  const auto [at_voxels, channels, detail] = GetParam();
   const auto volume = std::make_shared<const Volume>(far_ball());
   const Lattice& lattice = volume->lattice();
-  const IlluminationGrid light =
+  IlluminationGrid light =
       varied_light(at_voxels ? voxel_lattice(lattice) : cell_lattice(lattice, {17, 31, 9}), channels);
-  const Surface surface = SurfaceMaker(volume, extractors(), {}).make({.isovalue = -0.4f}, {}, {});
+  if (detail) light = detailed(std::move(light));
+  const LightReader reader(*volume, light);
+  constexpr float kIsovalue = -0.4f;
+  const Surface surface = SurfaceMaker(volume, extractors(), {}).make({.isovalue = kIsovalue}, {}, {});
 
-  SurfaceRenderer renderer(lattice);
-  renderer.set_surface(surface.mesh);
+  SurfaceRenderer renderer(volume);
+  renderer.set_surface(surface.mesh, kIsovalue);
   renderer.set_light(light);
   SurfaceView view;
   view.camera = orbit_camera(lattice, 30.0, 20.0, 1.0);
@@ -117,7 +137,7 @@ TEST_P(LitPixels, AgreeWithTheLookUpOnTheProcessor) {
                             2.0 * double(target.depths[at]) - 1.0, 1.0);
       const glm::dvec4 centred = from_clip * clip;
       const Vec3 world = centre + Vec3(centred) / centred.w;
-      const Vec3f shown = view.exposure * view.albedo * light.at_world(world);
+      const Vec3f shown = view.exposure * view.albedo * reader.at_index(lattice.frame.index(world), double(kIsovalue));
       for (int c = 0; c < 3; ++c) {
         // One code for the texture's float16 and 8-bit filter weights, one for rounding.
         ASSERT_LE(std::abs(int(target.colours[at][std::size_t(c)]) - int(srgb_code(shown[c]))), 2)
@@ -130,11 +150,13 @@ TEST_P(LitPixels, AgreeWithTheLookUpOnTheProcessor) {
 }
 
 INSTANTIATE_TEST_SUITE_P(BothLattices, LitPixels,
-                         testing::Values(std::pair(false, 1), std::pair(false, 3), std::pair(true, 1),
-                                         std::pair(true, 3)),
+                         testing::Values(LightKind{false, 1, false}, LightKind{false, 3, false},
+                                         LightKind{true, 1, false}, LightKind{true, 3, false},
+                                         LightKind{false, 1, true}, LightKind{false, 3, true},
+                                         LightKind{true, 3, true}),
                          [](const auto& tested) {
-                           return std::string(tested.param.first ? "voxels_" : "cells_") +
-                                  std::to_string(tested.param.second);
+                           return std::string(tested.param.at_voxels ? "voxels_" : "cells_") +
+                                  std::to_string(tested.param.channels) + (tested.param.detail ? "_detailed" : "");
                          });
 
 TEST(SurfaceRenderer, ShowsTheHeadlightAndTheSkyWithoutLight) {
@@ -142,8 +164,8 @@ TEST(SurfaceRenderer, ShowsTheHeadlightAndTheSkyWithoutLight) {
   if (!context) GTEST_SKIP() << context.why();
   const auto volume = std::make_shared<const Volume>(read_volume("gen:sphere:32"));
   const Lattice& lattice = volume->lattice();
-  SurfaceRenderer renderer(lattice);
-  renderer.set_surface(SurfaceMaker(volume, extractors(), {}).make({.isovalue = -0.4f}, {}, {}).mesh);
+  SurfaceRenderer renderer(volume);
+  renderer.set_surface(SurfaceMaker(volume, extractors(), {}).make({.isovalue = -0.4f}, {}, {}).mesh, -0.4f);
   SurfaceView view;
   view.camera = orbit_camera(lattice, 0.0, 0.0, 1.0);
   Target target;
@@ -159,7 +181,7 @@ TEST(SurfaceRenderer, ShowsTheHeadlightAndTheSkyWithoutLight) {
 TEST(SurfaceRenderer, DrawsNothingWhereThereIsNothing) {
   const test::EglContext context;
   if (!context) GTEST_SKIP() << context.why();
-  const SurfaceRenderer renderer(read_volume("gen:sphere:4").lattice());
+  const SurfaceRenderer renderer(std::make_shared<const Volume>(read_volume("gen:sphere:4")));
   Target target;
   renderer.draw({});
   target.read();

@@ -82,48 +82,4 @@ const IlluminationGrid& LightReader::offsets() const { return impl_->offsets; }
 const std::vector<float>& LightReader::slopes() const { return impl_->slopes.values; }
 float LightReader::reference_isovalue() const { return impl_->reference; }
 
-const char* light_reader_glsl() {
-  return R"(uniform sampler3D light_offsets;    // V, texels over the box of the volume
-uniform sampler3D light_slopes;     // S
-uniform sampler3D volume_values;    // f, texels at the grid points
-uniform float reference_isovalue;   // h0
-uniform float light_ceiling;
-uniform vec3 grid_points;           // of the volume
-uniform mat3 index_to_world;
-uniform float mean_spacing;
-uniform int near_field_terms;
-uniform float near_field_step[4];
-uniform float near_field_mean[4];
-uniform vec3 near_field_weight[4];
-
-float volume_at(vec3 index) { return texture(volume_values, (index + 0.5) / grid_points).r; }
-
-vec3 volume_gradient(vec3 index) {
-  // Equal to interpolating the grid points' central differences, but on the outermost grid points.
-  vec3 g;
-  g.x = 0.5 * (volume_at(index + vec3(1, 0, 0)) - volume_at(index - vec3(1, 0, 0)));
-  g.y = 0.5 * (volume_at(index + vec3(0, 1, 0)) - volume_at(index - vec3(0, 1, 0)));
-  g.z = 0.5 * (volume_at(index + vec3(0, 0, 1)) - volume_at(index - vec3(0, 0, 1)));
-  return transpose(inverse(index_to_world)) * g;
-}
-
-vec3 read_light(vec3 place, float isovalue) {
-  vec3 e = texture(light_offsets, place).rgb + texture(light_slopes, place).rgb * (isovalue - reference_isovalue);
-  vec3 index = place * (grid_points - 1.0);
-  vec3 gradient = volume_gradient(index);
-  float steepness = length(gradient);
-  for (int t = 0; t < near_field_terms; ++t) {
-    float reach = near_field_step[t] * mean_spacing;
-    float openness = 0.0;
-    if (steepness > 0.0) {
-      vec3 ahead = index - inverse(index_to_world) * (gradient * (reach / steepness));
-      openness = clamp((isovalue - volume_at(ahead)) / (steepness * reach), -1.0, 1.0);
-    }
-    e += near_field_weight[t] * (openness - near_field_mean[t]);
-  }
-  return clamp(e, 0.0, light_ceiling);
-}
-)";
-}
-
 }  // namespace isolux

@@ -39,7 +39,7 @@ void Viewer::start(Document document) {
   message_.clear();
   const std::shared_ptr<const Volume> volume = document_.volume;
   const Lattice& lattice = volume->lattice();
-  renderer_ = std::make_unique<SurfaceRenderer>(lattice);
+  renderer_ = std::make_unique<SurfaceRenderer>(volume);
   layout_ = Layout::kLocal;
   outer_ = settings_.outer.value_or(OuterSide::kLower);
   const ValueRange range = document_.histogram.range;
@@ -210,7 +210,7 @@ void Viewer::say(const std::string& line) { message_ = line; }
 bool Viewer::update() {
   bool changed = bake_ != nullptr;
   if (auto surface = worker_->take()) {
-    renderer_->set_surface(surface->mesh);
+    renderer_->set_surface(surface->mesh, surface->settings.isovalue);
     shown_ = {.triangles = surface->mesh.triangles.size(), .seconds = surface->seconds};
     if (!surface->error.empty()) say(surface->error);
     worker_->recycle(std::move(surface->mesh));

@@ -22,8 +22,10 @@ std::string first_line(const std::vector<char>& log) {
 
 }  // namespace
 
-ShaderProgram::ShaderProgram(const char* vertex_source, const char* fragment_source) : name_(glCreateProgram()) {
-  const GLuint shaders[2] = {compile(GL_VERTEX_SHADER, vertex_source), compile(GL_FRAGMENT_SHADER, fragment_source)};
+ShaderProgram::ShaderProgram(const char* vertex_source, std::initializer_list<const char*> fragment_sources)
+    : name_(glCreateProgram()) {
+  std::vector<GLuint> shaders{compile(GL_VERTEX_SHADER, vertex_source)};
+  for (const char* source : fragment_sources) shaders.push_back(compile(GL_FRAGMENT_SHADER, source));
   for (const GLuint shader : shaders) glAttachShader(name_, shader);
   glLinkProgram(name_);
   GLint linked = 0;

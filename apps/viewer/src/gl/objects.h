@@ -3,16 +3,17 @@
 #include <epoxy/gl.h>
 
 #include <cstddef>
-#include <span>
+#include <initializer_list>
 #include <string>
 
 namespace isolux::viewer {
 
-/// A linked program of two shaders. Like all here: made, used and destroyed with the same context current.
+/// A linked program of a vertex shader and fragment shaders, of which one has main(). Like all here: made, used and
+/// destroyed with the same context current.
 class ShaderProgram {
  public:
   /// \throw GlError with the first line of the driver's log
-  ShaderProgram(const char* vertex_source, const char* fragment_source);
+  ShaderProgram(const char* vertex_source, std::initializer_list<const char*> fragment_sources);
   ShaderProgram(const ShaderProgram&) = delete;
   ShaderProgram& operator=(const ShaderProgram&) = delete;
   ~ShaderProgram() { glDeleteProgram(name_); }

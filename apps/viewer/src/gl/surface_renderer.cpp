@@ -1,11 +1,12 @@
 #include "gl/surface_renderer.h"
 
-#include <isolux/gl_texture/texture_uploader.h>
+#include <isolux/resample/light_reader.h>
 
 #include <glm/geometric.hpp>
 #include <glm/gtc/type_ptr.hpp>
 #include <glm/mat4x4.hpp>
 #include <glm/matrix.hpp>
+#include <utility>
 
 #include "camera/framing.h"
 #include "gl/shader_sources.h"
@@ -22,11 +23,11 @@ std::size_t bytes(const Values& values) {
 
 }  // namespace
 
-SurfaceRenderer::SurfaceRenderer(const Lattice& volume)
-    : volume_(volume),
-      centre_(box_middle(volume)),
-      radius_(box_radius(volume)),
-      program_(kSurfaceVertexShader, kSurfaceFragmentShader) {
+SurfaceRenderer::SurfaceRenderer(std::shared_ptr<const Volume> volume)
+    : volume_(std::move(volume)),
+      centre_(box_middle(volume_->lattice())),
+      radius_(box_radius(volume_->lattice())),
+      program_(kSurfaceVertexShader, {kSurfaceFragmentShader, light_reader_glsl()}) {
   vertex_array_.bind();
   const Buffer* attributes[2] = {&positions_, &normals_};
   for (GLuint i = 0; i < 2; ++i) {
@@ -37,18 +38,17 @@ SurfaceRenderer::SurfaceRenderer(const Lattice& volume)
   indices_.bind();
 }
 
-void SurfaceRenderer::set_surface(const IndexedMesh& mesh) {
+void SurfaceRenderer::set_surface(const IndexedMesh& mesh, float isovalue) {
   index_count_ = 0;
   vertex_array_.bind();
   positions_.fill(mesh.positions.data(), bytes(mesh.positions));
   normals_.fill(mesh.normals.data(), bytes(mesh.normals));
   indices_.fill(mesh.triangles.data(), bytes(mesh.triangles));
   index_count_ = GLsizei(mesh.triangles.size() * 3);
+  isovalue_ = isovalue;
 }
 
-void SurfaceRenderer::set_light(const IlluminationGrid& light) {
-  light_ = uploaders().create()->upload(light, volume_);
-}
+void SurfaceRenderer::set_light(const IlluminationGrid& light) { light_.emplace(*volume_, light); }
 
 void SurfaceRenderer::draw(const SurfaceView& view) const {
   if (index_count_ == 0) return;
@@ -56,8 +56,9 @@ void SurfaceRenderer::draw(const SurfaceView& view) const {
   const Vec3 centre(centre_);
   const glm::mat4 clip(clip_from_centred(view.camera, centre, radius_, view.aspect));
   // Place in the box from a position relative to the box's middle, whose place is 1/2 on each axis.
-  Mat3 axes = volume_.frame.axes;
-  for (int a = 0; a < 3; ++a) axes[a] *= double(volume_.size[a] - 1);
+  const Lattice& lattice = volume_->lattice();
+  Mat3 axes = lattice.frame.axes;
+  for (int a = 0; a < 3; ++a) axes[a] *= double(lattice.size[a] - 1);
   const glm::mat3 place(glm::inverse(axes));
   const Vec3f eye(view.camera.eye - centre);
   program_.use();
@@ -70,16 +71,8 @@ void SurfaceRenderer::draw(const SurfaceView& view) const {
   glUniform1i(program_.uniform("global_light"), global ? 1 : 0);
   glUniform1i(program_.uniform("flat_colour"), 0);
   glUniform3fv(program_.uniform("line_colour"), 1, glm::value_ptr(kLineColour));
-  glUniform1i(program_.uniform("light"), 0);
-  if (global) {
-    const Vec3f scale(light_->scale());
-    const Vec3f offset(light_->offset());
-    glUniform3fv(program_.uniform("light_scale"), 1, glm::value_ptr(scale));
-    glUniform3fv(program_.uniform("light_offset"), 1, glm::value_ptr(offset));
-    glUniform1f(program_.uniform("light_gain"), float(light_->gain()));
-    glActiveTexture(GL_TEXTURE0);
-    glBindTexture(GL_TEXTURE_3D, light_->name());
-  }
+  glUniform1f(program_.uniform("isovalue"), isovalue_);
+  if (global) light_->bind(program_);
   glEnable(GL_DEPTH_TEST);
   vertex_array_.bind();
   const bool triangles = view.style == SurfaceStyle::kTriangles;

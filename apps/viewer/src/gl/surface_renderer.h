@@ -1,12 +1,12 @@
 #pragma once
 
-#include <isolux/core/illumination_grid.h>
-#include <isolux/gl_texture/texture3d.h>
 #include <isolux/mc_extract/indexed_mesh.h>
 #include <isolux/render/camera.h>
 
+#include <memory>
 #include <optional>
 
+#include "gl/light_textures.h"
 #include "gl/objects.h"
 #include "ui/panes.h"
 
@@ -24,15 +24,15 @@ struct SurfaceView {
   double aspect = 1.0;    ///< width over height of OpenGL's viewport
 };
 
-/// Draws an isosurface of a volume, lit locally or by its 3D texture, as 8-bit sRGB codes.
+/// Draws an isosurface of a volume, lit locally or by its 3D textures, as 8-bit sRGB codes.
 class SurfaceRenderer {
  public:
   /// Needs a current OpenGL 3.3 core context, as all that follows. \throw GlError
-  explicit SurfaceRenderer(const Lattice& volume);
+  explicit SurfaceRenderer(std::shared_ptr<const Volume> volume);
 
-  /// \throw GlError if OpenGL has no memory for it
-  void set_surface(const IndexedMesh& mesh);
-  /// \throw GlError, InvalidInput as TextureUploader::upload
+  /// The level set of `isovalue`. \throw GlError if OpenGL has no memory for it
+  void set_surface(const IndexedMesh& mesh, float isovalue);
+  /// \throw GlError, InvalidInput as LightTextures
   void set_light(const IlluminationGrid& light);
   [[nodiscard]] bool has_light() const { return light_.has_value(); }
 
@@ -40,7 +40,7 @@ class SurfaceRenderer {
   void draw(const SurfaceView& view) const;
 
  private:
-  Lattice volume_;
+  std::shared_ptr<const Volume> volume_;
   Vec3f centre_;
   double radius_ = 0.0;
   ShaderProgram program_;
@@ -49,7 +49,8 @@ class SurfaceRenderer {
   Buffer normals_{GL_ARRAY_BUFFER};
   Buffer indices_{GL_ELEMENT_ARRAY_BUFFER};
   GLsizei index_count_ = 0;
-  std::optional<Texture3D> light_;
+  float isovalue_ = 0.0f;
+  std::optional<LightTextures> light_;
 };
 
 }  // namespace isolux::viewer

@@ -8,14 +8,13 @@ uniform vec3 eye;       // relative to the centre
 uniform vec3 albedo;
 uniform float exposure;
 uniform bool global_light;
-uniform sampler3D light;
-uniform vec3 light_scale;
-uniform vec3 light_offset;
-uniform float light_gain;
+uniform float isovalue;
 uniform bool flat_colour;  // for lines
 uniform vec3 line_colour;
 
 out vec4 colour;
+
+vec3 read_light(vec3 place, float isovalue);  // light_reader_glsl()
 
 // A headlight over the viewer's shoulder and a hemisphere of sky above +z, as isolux render draws them.
 float local_light(vec3 n) {
@@ -38,7 +37,7 @@ void main() {
   if (!global_light) {
     radiance = albedo * local_light(gl_FrontFacing ? n : -n);
   } else if (gl_FrontFacing) {
-    radiance = albedo * light_gain * texture(light, light_scale * place + light_offset).rgb;
+    radiance = albedo * read_light(place, isovalue);
   } else {
     radiance = albedo * 0.1 * local_light(-n);  // the inner side has no light of its own
   }

@@ -41,8 +41,9 @@ class LightReader {
   std::unique_ptr<const Impl> impl_;
 };
 
-/// The formula in GLSL 3.30: `vec3 read_light(vec3 place, float isovalue)`, place in the box from 0 to 1. It needs the
-/// uniforms that its first lines declare.
+/// The formula as a shader of its own in GLSL 3.30, to be linked to one that declares and calls
+/// `vec3 read_light(vec3 place, float isovalue)`: place in the volume's box from 0 to 1. It needs the uniforms that its
+/// first lines declare.
 [[nodiscard]] const char* light_reader_glsl();
 
 }  // namespace isolux
