@@ -50,7 +50,8 @@ function(isolux_flags target)
     -ffp-contract=off                        # the same bits with and without FMA instructions
     $<$<BOOL:${ISOLUX_WERROR}>:-Werror>)
   if(ISOLUX_SANITIZE)
-    target_compile_options(${target} PRIVATE -fsanitize=${ISOLUX_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer)
+    target_compile_options(${target} PRIVATE -fsanitize=${ISOLUX_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer
+      $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized>)  # GCC 12: false positives in the standard library's own headers
     target_link_options(${target} PRIVATE -fsanitize=${ISOLUX_SANITIZE})
   endif()
 endfunction()
