@@ -32,6 +32,11 @@ BrickIndex::BrickIndex(const Volume& volume, const Run& run) {
       row_high_[n] = *std::max_element(high, high + bricks_.x);
     }
   });
+  for (int layer = 0; layer < bricks_.z; ++layer) {
+    const auto first = std::ptrdiff_t(row_number(0, layer));
+    layer_low_.push_back(*std::min_element(row_low_.begin() + first, row_low_.begin() + first + bricks_.y));
+    layer_high_.push_back(*std::max_element(row_high_.begin() + first, row_high_.begin() + first + bricks_.y));
+  }
 }
 
 namespace {
@@ -41,16 +46,22 @@ bool is_mixed(const ExtractSettings& settings, float low, float high) {
 }
 }  // namespace
 
-void BrickIndex::find_active(const ExtractSettings& settings, int row, int layer, int words,
-                             std::uint8_t* activity) const {
-  std::fill_n(activity, words, std::uint8_t(0));
+bool BrickIndex::layer_is_mixed(const ExtractSettings& settings, int layer) const {
+  return is_mixed(settings, layer_low_[layer], layer_high_[layer]);
+}
+
+int BrickIndex::find_active(const ExtractSettings& settings, int row, int layer, std::uint8_t* activity) const {
   const std::size_t n = row_number(row, layer);
-  if (!is_mixed(settings, row_low_[n], row_high_[n])) return;
+  if (!is_mixed(settings, row_low_[n], row_high_[n])) return 0;
   const float* low = &low_[n * bricks_.x];
   const float* high = &high_[n * bricks_.x];
-  for (int brick = 0; brick < bricks_.x; ++brick)
-    activity[brick / kBricksPerWord] |=
-        std::uint8_t(int(is_mixed(settings, low[brick], high[brick])) << brick % kBricksPerWord);
+  int count = 0;
+  for (int brick = 0; brick < bricks_.x; ++brick) {
+    const int mixed = int(is_mixed(settings, low[brick], high[brick]));
+    activity[brick / kBricksPerWord] |= std::uint8_t(mixed << brick % kBricksPerWord);
+    count += mixed;
+  }
+  return count;
 }
 
 bool BrickIndex::inside(const ExtractSettings& settings, int brick, int row, int layer) const {

@@ -37,7 +37,13 @@ EdgePlaces places_on_faces(const std::vector<CellPolygon>& polygons) {
 
 CellCase make_case(int inside, CaseTable::Winding winding) {
   CellCase result;
-  for (int e = 0; e < 12; ++e) result.crossed[e] = std::uint8_t(crossed_edges(inside) >> e & 1);
+  const int crossed = crossed_edges(inside);
+  for (int e = 0; e < 12; ++e) {
+    // Edges along y and z lie in pairs on their row: the one at the lower x, even, comes first.
+    const int first = e < 4 ? e : e & ~1;
+    result.step[e] = std::uint32_t(crossed >> first & 1);
+    result.offset[e] = e == first ? 0 : result.step[e];
+  }
   for (int f = 0; f < 6; ++f) result.segments[f] = std::uint8_t(face_segments(inside, f));
   const std::vector<CellPolygon> polygons = cell_polygons(inside, 0);
   EdgePlaces places = places_on_faces(polygons);

@@ -10,11 +10,14 @@ struct CellCase {
   std::uint8_t triangles = 0;
   std::uint8_t inner_edges = 0;
   std::array<std::int8_t, 3> owned{-1, -1, -1};  ///< a half-edge leaving the vertex on edge 0, 4, 8, or -1
-  std::array<std::uint8_t, 12> crossed{};        ///< 1 where the edge is crossed
-  std::array<std::uint8_t, 6> segments{};        ///< on each face
-  std::array<std::uint8_t, 15> vertex{};         ///< cube edge of each triangle corner
-  std::array<std::uint8_t, 15> slot{};           ///< of each half-edge: the face it lies on, 6 for inside the cell
-  std::array<std::uint8_t, 15> half{};           ///< its number among the half-edges of that face or of the inside
+  /// Vertex numbers run along the four rows of x edges and the two rows each of y and z edges: what is added to a row's
+  /// next number for each edge's vertex, and once the cell is done. By cube edge.
+  std::array<std::uint32_t, 12> offset{};
+  std::array<std::uint32_t, 12> step{};
+  std::array<std::uint8_t, 6> segments{};  ///< on each face
+  std::array<std::uint8_t, 15> vertex{};   ///< cube edge of each triangle corner
+  std::array<std::uint8_t, 15> slot{};     ///< of each half-edge: the face it lies on, 6 for inside the cell
+  std::array<std::uint8_t, 15> half{};     ///< its number among the half-edges of that face or of the inside
 };
 
 /// The 256 cases of marching cubes, made by rule so that any two neighbours fit: inside corners are kept apart on every

@@ -17,14 +17,7 @@ class IsoExtractor::Implementation {
   }
 
   void extract(const ExtractSettings& settings, const Run& run, IndexedMesh& mesh) {
-    const mc::MeshSize size = count(settings, run, mc::Connectivity::kIndexed);
-    resize(mesh.positions, size.vertices);
-    resize(mesh.normals, size.vertices);
-    resize(mesh.triangles, size.triangles);
-    if (size.triangles > 0) {
-      march_.write_vertices(run, &mesh.positions[0].x, &mesh.normals[0].x);
-      march_.write_triangles(run, mesh.triangles.data());
-    }
+    march_.march(settings, run, index(), mesh);
     mc::finish_mesh(mesh, *volume_, settings);
   }
 
@@ -35,7 +28,7 @@ class IsoExtractor::Implementation {
       mesh = mc::build_mesh(indexed);
       return;
     }
-    const mc::MeshSize size = count(settings, run, mc::Connectivity::kHalfEdges);
+    const mc::MeshSize size = march_.count(settings, run, index());
     const mc::MeshMemory memory = mc::resize_mesh(mesh, size.vertices, size.edges, size.triangles);
     if (size.triangles == 0) return;
     march_.write_vertices(run, memory.positions, memory.normals);
@@ -44,15 +37,7 @@ class IsoExtractor::Implementation {
   }
 
  private:
-  mc::MeshSize count(const ExtractSettings& settings, const Run& run, mc::Connectivity connectivity) {
-    return march_.count(settings, run, index_ ? &*index_ : nullptr, connectivity);
-  }
-
-  template <class T>
-  static void resize(LargeVector<T>& vector, std::size_t size) {
-    if (vector.capacity() < size) LargeVector<T>().swap(vector);  // nothing of the old is to be copied
-    vector.resize(size);
-  }
+  [[nodiscard]] const mc::BrickIndex* index() const { return index_ ? &*index_ : nullptr; }
 
   const Volume* volume_;
   mc::RowMarch march_;

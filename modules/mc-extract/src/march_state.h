@@ -107,6 +107,10 @@ struct WordBits {
   }
   /// The case of cell i: bit c for corner c.
   [[nodiscard]] unsigned corners(int i) const {
+    // Both ends of a row's edge are neighbouring bits of one word, but for the last.
+    if (i < 63)
+      return unsigned(here[0] >> i & 3) | unsigned(here[1] >> i & 3) << 2 | unsigned(here[2] >> i & 3) << 4 |
+             unsigned(here[3] >> i & 3) << 6;
     unsigned inside = 0;
     for (int r = 0; r < 4; ++r)
       inside |= unsigned(here[r] >> i & 1) << (2 * r) | unsigned(next[r] >> i & 1) << (2 * r + 1);

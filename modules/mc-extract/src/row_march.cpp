@@ -8,13 +8,17 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <limits>
+#include <utility>
 
 namespace isolux::mc {
 
 namespace {
 
 /// Slabs a task takes: a layer of bricks.
-constexpr std::size_t kBlock = BrickIndex::kHeight;
+constexpr int kLayer = BrickIndex::kHeight;
+
+/// Where more of the bricks hold both sides, the sparse way saves nothing: bits by bricks cost more than by rows.
+constexpr double kDense = 0.4;
 
 VertexFrame vertex_frame(const Lattice& lattice, const LevelSet& level_set) {
   VertexFrame frame{};
@@ -35,6 +39,30 @@ VertexFrame vertex_frame(const Lattice& lattice, const LevelSet& level_set) {
   }
   frame.margin = level_set.margin;
   return frame;
+}
+
+void require_countable(const MeshSize& size, float isovalue) {
+  constexpr std::size_t kMost = std::numeric_limits<std::int32_t>::max();
+  if (3 * size.triangles > kMost || 2 * size.edges > kMost)
+    throw InvalidInput(
+        fmt::format("the level set {} has {} triangles and more: a mesh is limited to 2^31 triangle corners and "
+                    "half-edges",
+                    isovalue, size.triangles));
+}
+
+/// Makes room for `size` elements and keeps those there are. Of the whole work a part `done` has come, so memory for
+/// the rest is reserved too; what is never touched costs nothing.
+template <class T>
+void grow(LargeVector<T>& vector, std::size_t size, double done) {
+  if (vector.capacity() < size) {
+    constexpr double kMost = 64.0;
+    LargeVector<T> larger;
+    larger.reserve(std::max(vector.capacity() * 3 / 2, std::size_t(double(size) * std::min(1.5 / done, kMost))));
+    larger.resize(vector.size());
+    std::copy(vector.begin(), vector.end(), larger.begin());
+    vector.swap(larger);
+  }
+  vector.resize(size);
 }
 
 }  // namespace
@@ -61,69 +89,112 @@ RowMarch::RowMarch(const Volume& volume) : lattice_(volume.lattice()), slabs_(st
   march_.slabs = slabs_.data();
 }
 
-MeshSize RowMarch::count(const ExtractSettings& settings, const Run& run, const BrickIndex* index,
-                         Connectivity connectivity) {
+int RowMarch::layer_count() const { return (march_.nz + kLayer - 1) / kLayer; }
+
+/// Enough for every thread to have two layers, or 2 MB.
+int RowMarch::layers_at_once(const Run& run) const {
+  const std::size_t bytes = sizeof(float) * std::size_t(march_.nx) * std::size_t(march_.ny) * kLayer;
+  return thread_count(run) * std::max(2, int((std::size_t(2) << 20) / bytes));
+}
+
+const CaseTable& RowMarch::cases() const {
+  return case_table(mirrored_ ? CaseTable::Winding::kInwards : CaseTable::Winding::kOutwards);
+}
+
+template <class Body>
+void RowMarch::for_each_slab(Layers layers, const Run& run, const Body& body) const {
+  parallel_blocks(std::size_t(layers.end - layers.begin), 1, run, "", [&](const Block& block) {
+    const int first = (layers.begin + int(block.begin)) * kLayer;
+    for (int k = first; k < std::min(first + kLayer, march_.nz); ++k) body(k);
+  });
+}
+
+void RowMarch::march(const ExtractSettings& settings, const Run& run, const BrickIndex* index, IndexedMesh& mesh) {
+  begin(settings, run, index);
+  mesh.positions.clear();
+  mesh.normals.clear();
+  mesh.triangles.clear();
+  const int layers = layer_count();
+  const int step = layers_at_once(run);
+  int classified = 0;
+  int connected = 0;
+  for (int first = 0; first < layers; first += step) {
+    const int last = std::min(first + step, layers);
+    // A slab is counted by the bits of the next plane too, and its cells use the next slab's numbers.
+    const int ahead = std::min(last + 1, layers);
+    classify({classified, ahead}, run);
+    classified = ahead;
+    count_layers({first, last}, run, Connectivity::kIndexed);
+    number({first, last});
+    const double done = double(last) / layers;
+    grow(mesh.positions, size_.vertices, done);
+    grow(mesh.normals, size_.vertices, done);
+    grow(mesh.triangles, size_.triangles, done);
+    if (size_.triangles == 0) continue;
+    write_vertices({first, last}, run, &mesh.positions[0].x, &mesh.normals[0].x);
+    const int behind = last == layers ? layers : last - 1;
+    write_triangles({connected, behind}, run, mesh.triangles.data());
+    connected = behind;
+  }
+}
+
+MeshSize RowMarch::count(const ExtractSettings& settings, const Run& run, const BrickIndex* index) {
+  begin(settings, run, index);
+  const Layers all{0, layer_count()};
+  classify(all, run);
+  count_layers(all, run, Connectivity::kHalfEdges);
+  number(all);
+  return size_;
+}
+
+void RowMarch::begin(const ExtractSettings& settings, const Run& run, const BrickIndex* index) {
   const LevelSet level_set(lattice_, settings);
+  settings_ = settings;
   march_.isovalue = settings.isovalue;
   march_.outer = settings.outer;
   frame_ = vertex_frame(lattice_, level_set);
   mirrored_ = level_set.mirrored;
-  if (index != nullptr)
-    classify_active(settings, run, *index);
-  else
-    classify_all(run);
-  count_active(run, index, connectivity);
-  return number_slabs();
+  size_ = {};
+  index_ = index;
+  if (index == nullptr) return;
+  active_words_.find(*index, settings, run, march_.words);
+  if (active_words_.share() > kDense) index_ = nullptr;
 }
 
-void RowMarch::classify_all(const Run& run) {
-  parallel_blocks(std::size_t(march_.nz), kBlock, run, "", [&](const Block& block) {
-    for (int k = int(block.begin); k < int(block.end); ++k)
+void RowMarch::classify(Layers layers, const Run& run) {
+  if (index_ == nullptr) {
+    for_each_slab(layers, run, [&](int k) {
       for (int j = 0; j < march_.ny; ++j) classify_row(march_, j, k);
+    });
+    return;
+  }
+  parallel_blocks(std::size_t(layers.end - layers.begin), 1, run, "", [&](const Block& block) {
+    const int layer = layers.begin + int(block.begin);
+    // The last grid points of an axis may have no brick of their own.
+    for (int row = 0; row < index_->rows(); ++row)
+      if (active_words_.reaches_row(row, layer)) classify_brick_row(row, layer);
   });
 }
 
-void RowMarch::classify_active(const ExtractSettings& settings, const Run& run, const BrickIndex& index) {
-  brick_rows_ = index.rows();
-  const std::size_t words = std::size_t(march_.words);
-  activity_.resize(std::size_t(index.layers()) * std::size_t(index.rows()) * words);
-  parallel_blocks(std::size_t(index.layers()), 8, run, "", [&](const Block& block) {
-    for (int layer = int(block.begin); layer < int(block.end); ++layer)
-      for (int row = 0; row < index.rows(); ++row)
-        index.find_active(settings, row, layer, march_.words,
-                          &activity_[(std::size_t(layer) * std::size_t(index.rows()) + std::size_t(row)) * words]);
-  });
-  parallel_blocks(std::size_t(index.layers()), 1, run, "", [&](const Block& block) {
-    for (int row = 0; row < index.rows(); ++row) classify_brick_row(settings, index, row, int(block.begin));
-  });
-}
-
-std::uint8_t RowMarch::activity(int word, int row, int layer) const {
-  if (word < 0 || row < 0 || layer < 0) return 0;
-  return activity_[(std::size_t(layer) * std::size_t(brick_rows_) + std::size_t(row)) * std::size_t(march_.words) +
-                   std::size_t(word)];
-}
-
-void RowMarch::classify_brick_row(const ExtractSettings& settings, const BrickIndex& index, int row, int layer) {
-  constexpr int kHeight = BrickIndex::kHeight;
-  const BrickRows rows{.first_row = row * kHeight,
-                       .last_row = std::min((row + 1) * kHeight, march_.ny),
-                       .first_plane = layer * kHeight,
-                       .last_plane = std::min((layer + 1) * kHeight, march_.nz)};
+void RowMarch::classify_brick_row(int row, int layer) {
+  const BrickRows rows{.first_row = row * kLayer,
+                       .last_row = std::min((row + 1) * kLayer, march_.ny),
+                       .first_plane = layer * kLayer,
+                       .last_plane = std::min((layer + 1) * kLayer, march_.nz)};
   for (int word = 0; word < march_.words; ++word) {
     // A word's cells reach to the first grid points of its upper neighbours.
     int reached = 0;
     for (int n = 0; n < 4; ++n) {
-      reached |= activity(word, row - (n & 1), layer - (n >> 1));
-      reached |= activity(word - 1, row - (n & 1), layer - (n >> 1));
+      reached |= active_words_.own(word, row - (n & 1), layer - (n >> 1));
+      reached |= active_words_.own(word - 1, row - (n & 1), layer - (n >> 1));
     }
     if (reached == 0) continue;
-    const int own = activity(word, row, layer);
+    const int own = active_words_.own(word, row, layer);
     const int first_brick = word * BrickIndex::kBricksPerWord;
-    const int bricks = std::min(BrickIndex::kBricksPerWord, index.bricks_in_row() - first_brick);
+    const int bricks = std::min(BrickIndex::kBricksPerWord, index_->bricks_in_row() - first_brick);
     std::uint64_t uniform = 0;
     for (int b = 0; b < bricks; ++b)
-      if ((own >> b & 1) == 0 && index.inside(settings, first_brick + b, row, layer))
+      if ((own >> b & 1) == 0 && index_->inside(settings_, first_brick + b, row, layer))
         uniform |= ((std::uint64_t(1) << BrickIndex::kWidth) - 1) << (BrickIndex::kWidth * b);
     const int valid = march_.nx - 64 * word;
     if (valid < 64) uniform &= (std::uint64_t(1) << valid) - 1;
@@ -131,68 +202,59 @@ void RowMarch::classify_brick_row(const ExtractSettings& settings, const BrickIn
   }
 }
 
-void RowMarch::count_active(const Run& run, const BrickIndex* index, Connectivity connectivity) {
-  parallel_blocks(std::size_t(march_.nz), kBlock, run, "", [&](const Block& block) {
+void RowMarch::count_layers(Layers layers, const Run& run, Connectivity connectivity) {
+  if (index_ == nullptr) {
+    for_each_slab(layers, run, [&](int k) { count_slab(march_, k, nullptr, 0, connectivity); });
+    return;
+  }
+  parallel_blocks(std::size_t(layers.end - layers.begin), 1, run, "", [&](const Block& block) {
+    const int layer = layers.begin + int(block.begin);
     std::vector<std::uint32_t> candidates;
-    if (index != nullptr) {
-      const int layer = int(block.begin / kBlock);
-      for (int j = 0; j < march_.ny; ++j)
+    for (int row = 0; row < index_->rows(); ++row) {
+      if (!active_words_.row_is_active(row, layer)) continue;
+      for (int j = row * kLayer; j < std::min((row + 1) * kLayer, march_.ny); ++j)
         for (int word = 0; word < march_.words; ++word)
-          if (activity(word, j / BrickIndex::kHeight, layer) != 0) candidates.push_back(pack_word(j, word));
-      candidates.push_back(0);  // so that data() is something even where nothing is a candidate
+          if (active_words_.own(word, row, layer) != 0) candidates.push_back(pack_word(j, word));
     }
-    for (int k = int(block.begin); k < int(block.end); ++k) {
-      if (index != nullptr)
-        count_slab(march_, k, candidates.data(), candidates.size() - 1, connectivity);
-      else
-        count_slab(march_, k, nullptr, 0, connectivity);
-    }
+    candidates.push_back(0);  // so that data() is something even where nothing is a candidate
+    for (int k = layer * kLayer; k < std::min((layer + 1) * kLayer, march_.nz); ++k)
+      count_slab(march_, k, candidates.data(), candidates.size() - 1, connectivity);
   });
 }
 
-MeshSize RowMarch::number_slabs() {
-  MeshSize size;
-  for (Slab& slab : slabs_) {
+void RowMarch::number(Layers layers) {
+  for (int k = layers.begin * kLayer; k < std::min(layers.end * kLayer, march_.nz); ++k) {
+    Slab& slab = slabs_[std::size_t(k)];
     const Counts& total = slab.total;
-    slab.first.vertex_x = std::uint32_t(size.vertices);
+    slab.first.vertex_x = std::uint32_t(size_.vertices);
     slab.first.vertex_y = slab.first.vertex_x + total.vertex_x;
     slab.first.vertex_z = slab.first.vertex_y + total.vertex_y;
-    size.vertices += std::size_t(total.vertex_x) + total.vertex_y + total.vertex_z;
-    slab.first.face_x = std::uint32_t(size.edges);
+    size_.vertices += std::size_t(total.vertex_x) + total.vertex_y + total.vertex_z;
+    slab.first.face_x = std::uint32_t(size_.edges);
     slab.first.face_y = slab.first.face_x + total.face_x;
     slab.first.face_z = slab.first.face_y + total.face_y;
     slab.first.inner = slab.first.face_z + total.face_z;
-    size.edges += std::size_t(total.face_x) + total.face_y + total.face_z + total.inner;
-    slab.first.triangle = std::uint32_t(size.triangles);
-    size.triangles += total.triangle;
+    size_.edges += std::size_t(total.face_x) + total.face_y + total.face_z + total.inner;
+    slab.first.triangle = std::uint32_t(size_.triangles);
+    size_.triangles += total.triangle;
   }
-  constexpr std::size_t kMost = std::numeric_limits<std::int32_t>::max();
-  if (3 * size.triangles > kMost || 2 * size.edges > kMost)
-    throw InvalidInput(
-        fmt::format("the level set {} has {} triangles: a mesh is limited to 2^31 triangle corners and "
-                    "half-edges",
-                    march_.isovalue, size.triangles));
-  return size;
+  require_countable(size_, march_.isovalue);
+}
+
+void RowMarch::write_vertices(Layers layers, const Run& run, float* positions, float* normals) const {
+  for_each_slab(layers, run, [&](int k) { make_vertices(march_, k, frame_, positions, normals); });
+}
+
+void RowMarch::write_triangles(Layers layers, const Run& run, Triangle* triangles) const {
+  for_each_slab(layers, run, [&](int k) { make_triangles(march_, k, cases(), triangles); });
 }
 
 void RowMarch::write_vertices(const Run& run, float* positions, float* normals) const {
-  parallel_blocks(std::size_t(march_.nz), kBlock, run, "", [&](const Block& block) {
-    for (int k = int(block.begin); k < int(block.end); ++k) make_vertices(march_, k, frame_, positions, normals);
-  });
-}
-
-void RowMarch::write_triangles(const Run& run, Triangle* triangles) const {
-  const CaseTable& cases = case_table(mirrored_ ? CaseTable::Winding::kInwards : CaseTable::Winding::kOutwards);
-  parallel_blocks(std::size_t(march_.nz), kBlock, run, "", [&](const Block& block) {
-    for (int k = int(block.begin); k < int(block.end); ++k) make_triangles(march_, k, cases, triangles);
-  });
+  write_vertices({0, layer_count()}, run, positions, normals);
 }
 
 void RowMarch::write_half_edges(const Run& run, const HalfEdgeArrays& out) const {
-  const CaseTable& cases = case_table(mirrored_ ? CaseTable::Winding::kInwards : CaseTable::Winding::kOutwards);
-  parallel_blocks(std::size_t(march_.nz), kBlock, run, "", [&](const Block& block) {
-    for (int k = int(block.begin); k < int(block.end); ++k) make_half_edges(march_, k, cases, out);
-  });
+  for_each_slab({0, layer_count()}, run, [&](int k) { make_half_edges(march_, k, cases(), out); });
   link_border(run, out);
 }
 

@@ -7,6 +7,7 @@
 #include <optional>
 #include <vector>
 
+#include "active_words.h"
 #include "brick_index.h"
 #include "march_state.h"
 #include "wide_kernels.h"
@@ -20,29 +21,44 @@ struct MeshSize {
   std::size_t triangles = 0;
 };
 
-/// Marching cubes by rows, slab by slab in parallel: bits, counts, running sums, then vertices and connectivity
-/// straight to their places. Numbers do not depend on threads: they follow the grid.
+/// Marching cubes by rows: bits, counts, running sums, then vertices and connectivity straight to their places, in
+/// parallel by layers of four slabs. Numbers do not depend on threads: they follow the grid. With an index the volume
+/// is read only where the level set is, unless that is in so many bricks that reading all is quicker.
 class RowMarch {
  public:
   /// \throw InvalidInput for volumes whose planes are beyond 32-bit offsets.
   explicit RowMarch(const Volume& volume);
 
-  /// First half: what there is. Uses `index` if given.
-  [[nodiscard]] MeshSize count(const ExtractSettings& settings, const Run& run, const BrickIndex* index,
-                               Connectivity connectivity);
-  /// Second half, after count() with the same settings.
+  /// The whole way, a few layers at a time, so that values and bits are still in the cache where they are used again.
+  /// The mesh's memory is used again and grows as needed.
+  void march(const ExtractSettings& settings, const Run& run, const BrickIndex* index, IndexedMesh& mesh);
+
+  /// For half-edges, whose kernel takes its size beforehand. First half: what there is.
+  [[nodiscard]] MeshSize count(const ExtractSettings& settings, const Run& run, const BrickIndex* index);
+  /// Second half.
   void write_vertices(const Run& run, float* positions, float* normals) const;
-  void write_triangles(const Run& run, Triangle* triangles) const;
-  /// After count() with Connectivity::kHalfEdges.
   void write_half_edges(const Run& run, const HalfEdgeArrays& out) const;
 
  private:
-  void classify_all(const Run& run);
-  void classify_active(const ExtractSettings& settings, const Run& run, const BrickIndex& index);
-  void classify_brick_row(const ExtractSettings& settings, const BrickIndex& index, int row, int layer);
-  void count_active(const Run& run, const BrickIndex* index, Connectivity connectivity);
-  [[nodiscard]] MeshSize number_slabs();
-  [[nodiscard]] std::uint8_t activity(int word, int row, int layer) const;
+  /// Layers [begin, end) of bricks' height.
+  struct Layers {
+    int begin;
+    int end;
+  };
+  void begin(const ExtractSettings& settings, const Run& run, const BrickIndex* index);
+  void classify(Layers layers, const Run& run);
+  void classify_brick_row(int row, int layer);
+  void count_layers(Layers layers, const Run& run, Connectivity connectivity);
+  /// Gives the slabs their first numbers: layers in rising order.
+  void number(Layers layers);
+  void write_vertices(Layers layers, const Run& run, float* positions, float* normals) const;
+  void write_triangles(Layers layers, const Run& run, Triangle* triangles) const;
+  [[nodiscard]] const CaseTable& cases() const;
+  [[nodiscard]] int layer_count() const;
+  [[nodiscard]] int layers_at_once(const Run& run) const;
+  /// body(k) for every slab of the layers, a layer a task.
+  template <class Body>
+  void for_each_slab(Layers layers, const Run& run, const Body& body) const;
   void link_border(const Run& run, const HalfEdgeArrays& out) const;
 
   Lattice lattice_;
@@ -53,8 +69,10 @@ class RowMarch {
   LargeVector<Counts> rows_;
   LargeVector<std::uint32_t> active_;
   std::vector<Slab> slabs_;
-  std::vector<std::uint8_t> activity_;  ///< [layers][rows][words]: see BrickIndex::find_active
-  int brick_rows_ = 0;
+  ExtractSettings settings_;
+  const BrickIndex* index_ = nullptr;  ///< where the sparse way is taken
+  ActiveWords active_words_;
+  MeshSize size_;
 };
 
 }  // namespace isolux::mc

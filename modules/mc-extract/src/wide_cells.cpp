@@ -18,24 +18,23 @@ namespace {
 /// The numbers that run along a row of cells: the next vertex on each of the rows of grid edges around it, and the next
 /// mesh edge on each of its rows of faces and inside.
 struct RowCounters {
-  std::array<std::uint32_t, 4> x;  ///< edges along x at y + 2 z
-  std::array<std::uint32_t, 2> y;  ///< edges along y in the lower and upper plane
-  std::array<std::uint32_t, 2> z;  ///< edges along z in the lower and upper row
+  std::array<std::uint32_t, 12> vertex;  ///< for each cube edge the next one on its row
   std::uint32_t face_x;
   std::array<std::uint32_t, 2> face_y;
   std::array<std::uint32_t, 2> face_z;
   std::uint32_t inner;
   std::uint32_t triangle;
 
-  RowCounters(const MarchState& march, int j, int k) {
+  HWY_INLINE RowCounters(const MarchState& march, int j, int k) {
     const Counts& lower = march.slabs[k].first;
     const Counts& upper = march.slabs[k + 1].first;
     const Counts* rows = march.slab_rows(k) + j;
     const Counts* upper_rows = march.slab_rows(k + 1) + j;
-    x = {lower.vertex_x + rows[0].vertex_x, lower.vertex_x + rows[1].vertex_x, upper.vertex_x + upper_rows[0].vertex_x,
-         upper.vertex_x + upper_rows[1].vertex_x};
-    y = {lower.vertex_y + rows[0].vertex_y, upper.vertex_y + upper_rows[0].vertex_y};
-    z = {lower.vertex_z + rows[0].vertex_z, lower.vertex_z + rows[1].vertex_z};
+    const std::uint32_t x[4] = {lower.vertex_x + rows[0].vertex_x, lower.vertex_x + rows[1].vertex_x,
+                                upper.vertex_x + upper_rows[0].vertex_x, upper.vertex_x + upper_rows[1].vertex_x};
+    const std::uint32_t y[2] = {lower.vertex_y + rows[0].vertex_y, upper.vertex_y + upper_rows[0].vertex_y};
+    const std::uint32_t z[2] = {lower.vertex_z + rows[0].vertex_z, lower.vertex_z + rows[1].vertex_z};
+    vertex = {x[0], x[1], x[2], x[3], y[0], y[0], y[1], y[1], z[0], z[0], z[1], z[1]};
     face_x = lower.face_x + rows[0].face_x;
     face_y = {lower.face_y + rows[0].face_y, lower.face_y + rows[1].face_y};
     face_z = {lower.face_z + rows[0].face_z, upper.face_z + upper_rows[0].face_z};
@@ -44,17 +43,11 @@ struct RowCounters {
   }
 
   /// Vertex numbers of the cell's twelve edges; those not crossed are meaningless.
-  void vertices(const CellCase& cell, std::uint32_t (&ids)[12]) const {
-    for (int r = 0; r < 4; ++r) ids[r] = x[r];
-    for (int r = 0; r < 2; ++r) {
-      ids[4 + 2 * r] = y[r];
-      ids[5 + 2 * r] = y[r] + cell.crossed[4 + 2 * r];
-      ids[8 + 2 * r] = z[r];
-      ids[9 + 2 * r] = z[r] + cell.crossed[8 + 2 * r];
-    }
+  HWY_INLINE void vertices(const CellCase& cell, std::uint32_t (&ids)[12]) const {
+    for (int e = 0; e < 12; ++e) ids[e] = vertex[e] + cell.offset[e];
   }
   /// First half-edge of the cell's six faces and of its inside.
-  void half_edges(const CellCase& cell, std::uint32_t (&ids)[8]) const {
+  HWY_INLINE void half_edges(const CellCase& cell, std::uint32_t (&ids)[8]) const {
     ids[0] = 2 * face_x;
     ids[1] = 2 * (face_x + cell.segments[0]);
     for (int r = 0; r < 2; ++r) {
@@ -64,15 +57,11 @@ struct RowCounters {
     ids[6] = 2 * inner;
     ids[7] = 0;
   }
-  void pass_vertices(const CellCase& cell) {
-    for (int r = 0; r < 4; ++r) x[r] += cell.crossed[r];
-    for (int r = 0; r < 2; ++r) {
-      y[r] += cell.crossed[4 + 2 * r];
-      z[r] += cell.crossed[8 + 2 * r];
-    }
+  HWY_INLINE void pass_vertices(const CellCase& cell) {
+    for (int e = 0; e < 12; ++e) vertex[e] += cell.step[e];
     triangle += cell.triangles;
   }
-  void pass_half_edges(const CellCase& cell) {
+  HWY_INLINE void pass_half_edges(const CellCase& cell) {
     face_x += cell.segments[0];
     for (int r = 0; r < 2; ++r) {
       face_y[r] += cell.segments[2 + r];
