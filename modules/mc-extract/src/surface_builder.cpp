@@ -13,9 +13,8 @@ namespace {
 constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
 }
 
-SurfaceBuilder::SurfaceBuilder(const Volume& volume, const ExtractSettings& settings)
-    : volume_(volume),
-      settings_(settings),
+SurfaceBuilder::SurfaceBuilder(const Volume& volume, const ExtractSettings& settings, SlabRange slabs)
+    : slabs_(slabs),
       field_(volume),
       lattice_(volume.lattice()),
       level_set_(lattice_, settings),
@@ -42,6 +41,8 @@ std::uint32_t SurfaceBuilder::edge_vertex(const Index3& low, int direction) {
   const bool rises = level_set_.inside(b) == (level_set_.outer == OuterSide::kLower);
   const Vec3 uphill = Vec3(step) * (rises ? 1.0 : -1.0);
   id = push(Vec3(low) + double(level_set_.fraction(a, b)) * Vec3(step), uphill);
+  if (step.z == 0 && low.z == slabs_.first) block_.bottom.push_back({point * 8 + std::size_t(direction), id});
+  if (step.z == 0 && low.z == slabs_.last) block_.top.push_back({point * 8 + std::size_t(direction), id});
   return id;
 }
 
@@ -55,19 +56,14 @@ std::uint32_t SurfaceBuilder::push(const Vec3& index, const Vec3& uphill) {
     const double size = glm::length(outwards);
     normal = size > 0.0 && size < std::numeric_limits<double>::infinity() ? outwards / size : Vec3(0.0, 0.0, 1.0);
   }
-  mesh_.positions.emplace_back(lattice_.frame.world(index));
-  mesh_.normals.emplace_back(normal);
-  return std::uint32_t(mesh_.positions.size() - 1);
+  block_.mesh.positions.emplace_back(lattice_.frame.world(index));
+  block_.mesh.normals.emplace_back(normal);
+  return std::uint32_t(block_.mesh.positions.size() - 1);
 }
 
 void SurfaceBuilder::add_triangle(std::uint32_t a, std::uint32_t b, std::uint32_t c) {
   if (level_set_.mirrored) std::swap(b, c);
-  mesh_.triangles.push_back({a, b, c});
-}
-
-IndexedMesh SurfaceBuilder::take() {
-  finish_mesh(mesh_, volume_, settings_);
-  return std::move(mesh_);
+  block_.mesh.triangles.push_back({a, b, c});
 }
 
 }  // namespace isolux::mc

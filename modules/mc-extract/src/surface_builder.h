@@ -1,20 +1,43 @@
 #pragma once
 
+#include <isolux/core/run.h>
 #include <isolux/mc_extract/indexed_mesh.h>
 
 #include <array>
 #include <cstddef>
+#include <functional>
+#include <utility>
 #include <vector>
 
 #include "level_set.h"
 
 namespace isolux::mc {
 
-/// Collects a level set cell by cell in double precision, slab by slab: the plain way that the scalar backends share. A
-/// vertex on a grid edge is made once, whichever cell asks first.
+/// A vertex of a block on a plane that it shares with the next block.
+struct SharedVertex {
+  std::size_t edge;  ///< number of the grid edge in its plane
+  std::uint32_t id;
+  auto operator<=>(const SharedVertex&) const = default;
+};
+
+/// What a block of slabs gives: its part of the mesh, and which of its vertices lie on its first and last plane.
+struct SurfaceBlock {
+  IndexedMesh mesh;
+  std::vector<SharedVertex> bottom;
+  std::vector<SharedVertex> top;
+};
+
+/// Slabs [first, last) of cells: those between the grid planes `first` and `last`.
+struct SlabRange {
+  int first;
+  int last;
+};
+
+/// Collects a level set cell by cell in double precision, slab by slab of a block: the plain way that the scalar
+/// backends share. A vertex on a grid edge is made once, whichever cell asks first.
 class SurfaceBuilder {
  public:
-  SurfaceBuilder(const Volume& volume, const ExtractSettings& settings);
+  SurfaceBuilder(const Volume& volume, const ExtractSettings& settings, SlabRange slabs);
 
   /// Before the cells between grid planes k and k + 1, in rising order.
   void begin_slab(int k);
@@ -30,20 +53,28 @@ class SurfaceBuilder {
   [[nodiscard]] const LevelSet& level_set() const { return level_set_; }
   [[nodiscard]] float value(const Index3& at) const { return field_.data()[lattice_.offset(at.x, at.y, at.z)]; }
   [[nodiscard]] const Lattice& lattice() const { return lattice_; }
-  /// The mesh so far, with all that the settings ask for. Ends the use of the builder.
-  [[nodiscard]] IndexedMesh take();
+  /// The block so far. Ends the use of the builder.
+  [[nodiscard]] SurfaceBlock take() { return std::move(block_); }
 
  private:
   [[nodiscard]] std::uint32_t push(const Vec3& index, const Vec3& uphill);
 
-  const Volume& volume_;
-  ExtractSettings settings_;
+  SlabRange slabs_;
   TrilinearField field_;
   Lattice lattice_;
   LevelSet level_set_;
   Mat3 gradient_to_world_;
   std::array<std::vector<std::uint32_t>, 2> edge_vertices_;  ///< of two grid planes, 8 directions a point
-  IndexedMesh mesh_;
+  SurfaceBlock block_;
 };
+
+/// Adds what one mixed cell holds, given its inside corners.
+using AddCell = std::function<void(SurfaceBuilder& surface, const Index3& cell, int inside)>;
+
+/// The level set of the whole volume, with all that the settings ask for: blocks of slabs in parallel, joined in their
+/// order, so that the result does not depend on threads. `add_cell` is called from many threads, once for every cell
+/// with corners on both sides. \throw Cancelled.
+[[nodiscard]] IndexedMesh build_surface(const Volume& volume, const ExtractSettings& settings, const Run& run,
+                                        const AddCell& add_cell);
 
 }  // namespace isolux::mc

@@ -172,9 +172,12 @@ TEST_P(EveryExtractor, DoesNotCareForScaleAndOffsetOfValues) {
 }
 
 TEST_P(EveryExtractor, DoesNotDependOnThreads) {
-  const Volume volume = noise(Index3(40, 21, 33), 11);
-  const IsoMesh one = extract(volume, {.isovalue = 0.4f}, {.threads = 1});
-  for (const int threads : {2, 3})
+  // More slabs than any backend's threads take at a time, and a last block that is not full.
+  const Volume volume = noise(Index3(40, 21, 55), 11);
+  IsoMesh one = extract(volume, {.isovalue = 0.4f}, {.threads = 1});
+  EXPECT_TRUE(is_manifold(one));
+  EXPECT_TRUE(is_open_only_at_the_box(one, volume.lattice()));
+  for (const int threads : {2, 3, 8})
     EXPECT_TRUE(identical(one, extract(volume, {.isovalue = 0.4f}, {.threads = threads})));
 }
 

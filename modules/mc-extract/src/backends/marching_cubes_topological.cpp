@@ -252,19 +252,10 @@ class MarchingCubesTopological final : public Extractor {
   explicit MarchingCubesTopological(const Options& /*options*/) {}
 
   [[nodiscard]] IsoMesh extract(const Volume& volume, const ExtractSettings& settings, const Run& run) const override {
-    mc::SurfaceBuilder surface(volume, settings);
-    const Index3 cells = volume.lattice().size - 1;
-    for (int k = 0; k < cells.z; ++k) {
-      throw_if_stopped(run);
-      surface.begin_slab(k);
-      for (int j = 0; j < cells.y; ++j) {
-        for (int i = 0; i < cells.x; ++i) {
-          const int inside = surface.inside_corners({i, j, k});
-          if (inside != 0 && inside != 255) CellSurface(surface, {i, j, k}, inside, patches_).add();
-        }
-      }
-    }
-    return mc::build_mesh(surface.take());
+    return mc::build_mesh(
+        mc::build_surface(volume, settings, run, [this](mc::SurfaceBuilder& surface, const Index3& cell, int inside) {
+          CellSurface(surface, cell, inside, patches_).add();
+        }));
   }
 
  private:

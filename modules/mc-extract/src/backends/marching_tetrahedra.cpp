@@ -24,20 +24,10 @@ class MarchingTetrahedra final : public Extractor {
   explicit MarchingTetrahedra(const Options& /*options*/) {}
 
   [[nodiscard]] IsoMesh extract(const Volume& volume, const ExtractSettings& settings, const Run& run) const override {
-    mc::SurfaceBuilder surface(volume, settings);
-    const Index3 cells = volume.lattice().size - 1;
-    for (int k = 0; k < cells.z; ++k) {
-      throw_if_stopped(run);
-      surface.begin_slab(k);
-      for (int j = 0; j < cells.y; ++j)
-        for (int i = 0; i < cells.x; ++i) {
-          const Index3 cell(i, j, k);
-          const int inside = surface.inside_corners(cell);
-          if (inside == 0 || inside == 255) continue;
+    return mc::build_mesh(
+        mc::build_surface(volume, settings, run, [](mc::SurfaceBuilder& surface, const Index3& cell, int inside) {
           for (const auto& tetrahedron : kTetrahedra) add_tetrahedron(surface, cell, tetrahedron, inside);
-        }
-    }
-    return mc::build_mesh(surface.take());
+        }));
   }
 
  private:
