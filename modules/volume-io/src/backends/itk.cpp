@@ -2,6 +2,7 @@
 #include "../format_checks.h"
 #include "../itk_pixels.h"
 #include "../make_volume.h"
+#include "../slice_stack.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -17,7 +18,6 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <glm/geometric.hpp>
 #include <optional>
 #include <set>
 
@@ -112,14 +112,8 @@ void send_file(const std::string& path, const SendBytes& send) {
   send_pixels(path, *io, send);
 }
 
-struct Slice {
-  std::string path;
-  Lattice lattice;
-  ScalarType type = ScalarType::kInt16;
-};
-
-std::vector<Slice> dicom_slices(const std::string& source, const std::vector<std::string>& files) {
-  std::vector<Slice> slices;
+std::vector<detail::Slice> dicom_slices(const std::string& source, const std::vector<std::string>& files) {
+  std::vector<detail::Slice> slices;
   std::set<std::string> series;
   for (const auto& file : files) {
     const auto io = open<itk::GDCMImageIO>(file);
@@ -134,54 +128,12 @@ std::vector<Slice> dicom_slices(const std::string& source, const std::vector<std
   return slices;
 }
 
-// The lattice of slices one behind another, sorted: the third axis is the step from slice to slice, which a tilted
-// gantry makes oblique to them.
-//
-// With a spacing from the caller (`gap`) slices are taken one behind another in the order of their places.
-Lattice stack(const std::string& source, std::vector<Slice>& slices, std::optional<double> gap) {
-  Lattice lattice = slices.front().lattice;
-  const Mat3 axes = lattice.frame.axes;
-  const Vec3 normal = glm::normalize(glm::cross(axes[0], axes[1]));
-  for (const auto& slice : slices) {
-    const Lattice& other = slice.lattice;
-    double turned = 0.0;
-    for (int a = 0; a < 2; ++a)
-      turned = std::max(turned, glm::distance(other.frame.axes[a], axes[a]) / glm::length(axes[a]));
-    // A thousandth of a pixel's edge, far above the rounding of DICOM's decimal text.
-    if (other.size != Index3(lattice.size.x, lattice.size.y, 1) || !(turned < 1e-3))
-      throw InvalidInput(fmt::format("{}: the slices {} and {} differ in size, spacing or direction", source,
-                                     slices.front().path, slice.path));
-  }
-  std::sort(slices.begin(), slices.end(), [&](const Slice& a, const Slice& b) {
-    return glm::dot(a.lattice.frame.origin, normal) < glm::dot(b.lattice.frame.origin, normal);
-  });
-  lattice.frame.origin = slices.front().lattice.frame.origin;
-  if (slices.size() == 1) return lattice;
-  lattice.size.z = int(slices.size());
-  if (gap) {
-    lattice.frame.axes[2] = normal * *gap;
-    return lattice;
-  }
-  const Vec3 step = (slices.back().lattice.frame.origin - lattice.frame.origin) / double(slices.size() - 1);
-  for (std::size_t i = 0; i < slices.size(); ++i) {
-    const double off = glm::distance(slices[i].lattice.frame.origin, lattice.frame.origin + double(i) * step);
-    // Positions are rounded to a micrometre or so by scanners; a hundredth of the gap is no rounding any more.
-    if (!(off <= 1e-2 * glm::length(step)) || !(std::fabs(glm::dot(step, normal)) > 0.0))
-      throw InvalidInput(
-          fmt::format("{}: the DICOM slices are not evenly spaced: {} lies {:.3g} mm off its place in a "
-                      "stack of {} at {:.4g} mm; --spacing takes them as evenly spaced all the same",
-                      source, slices[i].path, off, slices.size(), glm::length(step)));
-  }
-  lattice.frame.axes[2] = step;
-  return lattice;
-}
-
 void send_dicom(const std::string& source, const std::vector<std::string>& files, std::optional<double> gap,
                 const SendBytes& send) {
   auto slices = dicom_slices(source, files);
-  const Lattice lattice = stack(source, slices, gap);
+  const Lattice lattice = detail::stack_slices(source, slices, gap);
   const bool one_type =
-      std::all_of(slices.begin(), slices.end(), [&](const Slice& s) { return s.type == slices[0].type; });
+      std::all_of(slices.begin(), slices.end(), [&](const detail::Slice& s) { return s.type == slices[0].type; });
   detail::send_volume(send, {.lattice = lattice,
                              .stored_type = one_type ? slices.front().type : ScalarType::kFloat32,
                              .blocks = slices.size()});
