@@ -45,6 +45,12 @@ ActiveCells::ActiveCells(const Volume& volume, const std::optional<ValueRange>& 
   for (const auto& row : of_row) columns_.insert(columns_.end(), row.begin(), row.end());
 }
 
+Index3 ActiveCells::cell(std::size_t n) const {
+  const auto row = std::size_t(std::upper_bound(row_begins_.begin(), row_begins_.end(), n) - row_begins_.begin()) - 1;
+  const auto rows = std::size_t(cells_.y);
+  return {columns_[n], int(row % rows), int(row / rows)};
+}
+
 Vec3f ActiveCells::place(const Vec3& u) const {
   if (columns_.size() == cell_count_) return Vec3f(u * Vec3(cells_));
 

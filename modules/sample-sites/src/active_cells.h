@@ -18,6 +18,9 @@ class ActiveCells {
   /// The part of the box that is active, 0 to 1.
   [[nodiscard]] double fraction() const { return double(columns_.size()) / double(cell_count_); }
   [[nodiscard]] bool empty() const { return columns_.empty(); }
+  [[nodiscard]] std::size_t size() const { return columns_.size(); }
+  /// Active cell number n in the order of memory. \pre n < size(). Cost: a binary search.
+  [[nodiscard]] Index3 cell(std::size_t n) const;
   /// The active point at place u, a point of [0,1)^3; index space. The inverse of the conditional distributions of z, y
   /// given z, x given both (Rosenblatt 1952, "Remarks on a multivariate transformation"): monotone in each coordinate,
   /// so neighbours mostly stay neighbours and the evenness of u mostly survives. \pre !empty().

@@ -21,7 +21,7 @@ void append_sites(Sites& all, const Sites& more, std::size_t count) {
 
 std::size_t wanted_sites(const SiteRequest& request, const ActiveCells& cells) {
   if (request.count > 0) return request.count;
-  return std::size_t(std::ceil(double(request.texels.count()) * cells.fraction()));
+  return std::size_t(std::ceil(request.per_texel * double(request.texels.count()) * cells.fraction()));
 }
 
 Sites sites_of_range(const Volume& volume, const SiteRequest& request, const ActiveCells& cells, std::uint64_t first,

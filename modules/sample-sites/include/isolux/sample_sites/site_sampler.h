@@ -12,7 +12,8 @@ namespace isolux {
 
 struct SiteRequest {
   Lattice texels{};                       ///< the grid that the samples are for
-  std::size_t count = 0;                  ///< sites wanted; 0: one a texel. Samplers that sit at texels ignore it
+  std::size_t count = 0;                  ///< sites wanted; 0: per_texel. Samplers that sit at texels ignore both
+  double per_texel = 1.0;                 ///< sites a texel of what can be lit
   std::optional<ValueRange> isovalues{};  ///< sites only on level sets within
   OuterSide outer = OuterSide::kLower;
   GradientKind gradient = GradientKind::kCentralDifferences;
@@ -29,7 +30,7 @@ class SiteSampler {
   [[nodiscard]] virtual Sites sample(const Volume& volume, const SiteRequest& request, const Run& run) const = 0;
 };
 
-/// random, stratified, low_discrepancy, texels
+/// random, stratified, low_discrepancy, level_sets, texels
 [[nodiscard]] Registry<SiteSampler> samplers();
 
 /// Gives positions (index space) their isovalues and normals and drops those without a normal or outside the range: the
