@@ -53,9 +53,9 @@ class Filler {
         run_(run),
         around_(make_neighbours(lattice())) {}
 
-  IlluminationGrid fill() {
+  IlluminationGrid fill(int layers) {
     std::vector<std::size_t> front = first_front();
-    while (!front.empty()) {
+    for (int layer = 0; layer < layers && !front.empty(); ++layer) {
       // The layer's texels see only those lit before it, so their order does not matter.
       parallel_blocks(front.size(), 4096, run_, "", [&](const Block& block) {
         for (std::size_t f = block.begin; f < block.end; ++f) light(front[f]);
@@ -134,6 +134,8 @@ class Filler {
 
 }  // namespace
 
-IlluminationGrid fill_unlit(ResampledGrid partial, const Run& run) { return Filler(std::move(partial), run).fill(); }
+IlluminationGrid fill_unlit(ResampledGrid partial, const Run& run, const FillSettings& settings) {
+  return Filler(std::move(partial), run).fill(settings.layers);
+}
 
 }  // namespace isolux

@@ -14,84 +14,27 @@ using Terms = std::array<double, kTerms>;
 
 }  // namespace
 
-/// The eight texels around a cell of texels.
-struct FitSystem::Corners {
-  std::array<std::size_t, 8> texel;
-  std::array<float, 8> isovalue;
-  std::array<float, 8> inverse_breadth;
-
-  /// The reading's weights of the texels' values, and of their slopes.
-  void weights(const Row& row, std::array<float, 8>& value, std::array<float, 8>& slope) const {
-    for (unsigned q = 0; q < 8; ++q) {
-      float w = 1.0f;
-      for (unsigned a = 0; a < 3; ++a) w *= (q >> a & 1u) != 0 ? row.place[a] : 1.0f - row.place[a];
-      value[q] = w;
-      slope[q] = w * (row.isovalue - isovalue[q]) * inverse_breadth[q];
-    }
-  }
-};
-
 FitSystem::FitSystem(const Volume& volume, const SampleSet& samples, const Lattice& texels, SlopeTerms slopes,
                      NearFieldUse near_field, const Run& run)
-    : texels_(texels),
-      volume_to_texels_(index_to_index(volume.lattice(), texels)),
-      slope_terms_(slopes),
-      near_field_(near_field),
-      run_(run) {
-  measure_texels(volume, run);
-  sort_rows(samples, run);
+    : slope_terms_(slopes), near_field_(near_field), run_(run) {
+  sort_rows(volume, samples, texels, run);
+  texels_.emplace(volume, texels, starts_, slopes, run);
   if (near_field_ == NearFieldUse::kFitted) measure_near_field(volume, samples, run);
 }
 
-Index3 FitSystem::cells() const {
-  return {std::max(texels_.size.x - 1, 1), std::max(texels_.size.y - 1, 1), std::max(texels_.size.z - 1, 1)};
-}
-
-void FitSystem::measure_texels(const Volume& volume, const Run& run) {
-  const TrilinearField field(volume);
-  const IndexToWorld to_volume = index_to_index(texels_, volume.lattice());
-  const ValueRange range = value_range(volume);
-  const float least = std::max(1e-4f * (range.high - range.low), 1e-30f);
-  const Index3 points = volume.lattice().size;
-  const Vec3 reach = glm::abs(to_volume.axes[0]) + glm::abs(to_volume.axes[1]) + glm::abs(to_volume.axes[2]);
-  isovalues_.resize(texels_.count());
-  breadths_.resize(texels_.count());
-  parallel_blocks(std::size_t(texels_.size.z), 1, run, "", [&](const Block& block) {
-    const auto k = int(block.begin);
-    for (int j = 0; j < texels_.size.y; ++j) {
-      for (int i = 0; i < texels_.size.x; ++i) {
-        const Vec3 centre = to_volume.world({i, j, k});
-        const std::size_t t = texels_.offset(i, j, k);
-        isovalues_[t] = float(field.value(centre));
-        // The voxels of the cells that the texel's linear tent touches.
-        const Index3 low = glm::max(Index3(glm::floor(centre - reach + 1e-6)), Index3(0));
-        const Index3 high = glm::min(Index3(glm::ceil(centre + reach - 1e-6)), points - 1);
-        float smallest = volume.values(low.x, low.y, low.z);
-        float largest = smallest;
-        for (int z = low.z; z <= high.z; ++z)
-          for (int y = low.y; y <= high.y; ++y) {
-            const auto [a, b] = std::minmax_element(&volume.values(low.x, y, z), &volume.values(high.x, y, z) + 1);
-            smallest = std::min(smallest, *a);
-            largest = std::max(largest, *b);
-          }
-        breadths_[t] = std::max(0.5f * (largest - smallest), least);
-      }
-    }
-  });
-}
-
-void FitSystem::sort_rows(const SampleSet& samples, const Run& run) {
-  const Index3 size = cells();
+void FitSystem::sort_rows(const Volume& volume, const SampleSet& samples, const Lattice& texels, const Run& run) {
+  const Index3 size = FitTexels::cells_of(texels);
+  const IndexToWorld volume_to_texels = index_to_index(volume.lattice(), texels);
   std::vector<std::size_t> cell_of(samples.size());
   std::vector<Row> unsorted(samples.size());
   parallel_blocks(samples.size(), 65536, run, "", [&](const Block& block) {
     for (std::size_t s = block.begin; s < block.end; ++s) {
-      const Vec3 at = volume_to_texels_.world(Vec3(samples.sites.positions[s]));
+      const Vec3 at = volume_to_texels.world(Vec3(samples.sites.positions[s]));
       Row& row = unsorted[s];
       std::size_t cell = 0;
       for (int a = 2; a >= 0; --a) {
         // Beyond the outermost texel centres reading clamps to the edge.
-        const double x = std::clamp(at[a], 0.0, double(texels_.size[a] - 1));
+        const double x = std::clamp(at[a], 0.0, double(texels.size[a] - 1));
         const int low = std::min(int(x), size[a] - 1);
         row.place[std::size_t(a)] = float(x - low);
         cell = cell * std::size_t(size[a]) + std::size_t(low);
@@ -148,7 +91,7 @@ Terms FitSystem::sum_layers(const std::vector<Terms>& layers) const {
 
 template <class Visit>
 void FitSystem::for_each_cell(const Visit& visit) const {
-  const Index3 size = cells();
+  const Index3 size = texels_->cells();
   const auto layer = [&](int k) {
     for (int j = 0; j < size.y; ++j) {
       for (int i = 0; i < size.x; ++i) {
@@ -156,16 +99,7 @@ void FitSystem::for_each_cell(const Visit& visit) const {
             (std::size_t(k) * std::size_t(size.y) + std::size_t(j)) * std::size_t(size.x) + std::size_t(i);
         const std::span rows(rows_.data() + starts_[cell], starts_[cell + 1] - starts_[cell]);
         if (rows.empty()) continue;
-        Corners corners{};
-        for (unsigned q = 0; q < 8; ++q) {
-          const std::size_t t = texels_.offset(std::min(i + int(q & 1u), texels_.size.x - 1),
-                                               std::min(j + int(q >> 1 & 1u), texels_.size.y - 1),
-                                               std::min(k + int(q >> 2), texels_.size.z - 1));
-          corners.texel[q] = t;
-          corners.isovalue[q] = isovalues_[t];
-          corners.inverse_breadth[q] = slope_terms_ == SlopeTerms::kNone ? 0.0f : 1.0f / breadths_[t];
-        }
-        visit(corners, rows, std::size_t(k));
+        visit(texels_->corners(i, j, k), rows, std::size_t(k));
       }
     }
   };
@@ -178,27 +112,27 @@ void FitSystem::for_each_cell(const Visit& visit) const {
 
 FitVector FitSystem::zero() const {
   FitVector x;
-  x.values.assign(texels_.count(), 0.0f);
-  if (slope_terms_ == SlopeTerms::kByIsovalue) x.slopes.assign(texels_.count(), 0.0f);
+  x.values.assign(texels_->size(), 0.0f);
+  if (slope_terms_ == SlopeTerms::kByIsovalue) x.slopes.assign(texels_->size(), 0.0f);
   return x;
 }
 
 FitVector FitSystem::prior(std::span<const float> light, std::vector<float>& coverage) const {
   FitVector x = zero();
-  std::vector<double> sum(texels_.count(), 0.0);
-  std::vector<double> total(texels_.count(), 0.0);
-  for_each_cell([&](const Corners& corners, std::span<const Row> rows, std::size_t /*layer*/) {
+  std::vector<double> sum(texels_->size(), 0.0);
+  std::vector<double> total(texels_->size(), 0.0);
+  for_each_cell([&](const FitCorners& corners, std::span<const Row> rows, std::size_t /*layer*/) {
     std::array<float, 8> w{};
     std::array<float, 8> s{};
     for (const Row& row : rows) {
-      corners.weights(row, w, s);
+      corners.weights(row.place, row.isovalue, w, s);
       for (unsigned q = 0; q < 8; ++q) {
         sum[corners.texel[q]] += double(w[q]) * double(light[row.sample]);
         total[corners.texel[q]] += double(w[q]);
       }
     }
   });
-  coverage.resize(texels_.count());
+  coverage.resize(texels_->size());
   for (std::size_t t = 0; t < sum.size(); ++t) {
     coverage[t] = float(total[t]);
     if (total[t] > 0.0) x.values[t] = float(sum[t] / total[t]);
@@ -208,13 +142,13 @@ FitVector FitSystem::prior(std::span<const float> light, std::vector<float>& cov
 
 FitVector FitSystem::residual_gradient(std::span<const float> light, const FitVector& x) const {
   FitVector y = zero();
-  std::vector<Terms> layers(std::size_t(cells().z), Terms{});
+  std::vector<Terms> layers(std::size_t(texels_->cells().z), Terms{});
   const bool sloped = slope_terms_ == SlopeTerms::kByIsovalue;
-  for_each_cell([&](const Corners& corners, std::span<const Row> rows, std::size_t layer) {
+  for_each_cell([&](const FitCorners& corners, std::span<const Row> rows, std::size_t layer) {
     std::array<float, 8> w{};
     std::array<float, 8> s{};
     for (const Row& row : rows) {
-      corners.weights(row, w, s);
+      corners.weights(row.place, row.isovalue, w, s);
       double read = 0.0;
       for (unsigned q = 0; q < 8; ++q) {
         read += double(w[q]) * double(x.values[corners.texel[q]]);
@@ -237,14 +171,14 @@ FitVector FitSystem::normal_product(const FitVector& x, const FitDamping& dampin
   FitVector y = zero();
   for (std::size_t t = 0; t < x.values.size(); ++t) y.values[t] = float(damping.value) * x.values[t];
   for (std::size_t t = 0; t < x.slopes.size(); ++t) y.slopes[t] = float(damping.slope) * x.slopes[t];
-  std::vector<Terms> layers(std::size_t(cells().z), Terms{});
+  std::vector<Terms> layers(std::size_t(texels_->cells().z), Terms{});
   const bool sloped = slope_terms_ == SlopeTerms::kByIsovalue;
   const std::array<float, kTerms> terms = [&] {
     std::array<float, kTerms> result{};
     for (std::size_t t = 0; t < kTerms; ++t) result[t] = float(x.terms[t]);
     return result;
   }();
-  for_each_cell([&](const Corners& corners, std::span<const Row> rows, std::size_t layer) {
+  for_each_cell([&](const FitCorners& corners, std::span<const Row> rows, std::size_t layer) {
     std::array<float, 8> w{};
     std::array<float, 8> s{};
     std::array<float, 8> values{};
@@ -256,7 +190,7 @@ FitVector FitSystem::normal_product(const FitVector& x, const FitDamping& dampin
       slopes[q] = sloped ? x.slopes[corners.texel[q]] : 0.0f;
     }
     for (const Row& row : rows) {
-      corners.weights(row, w, s);
+      corners.weights(row.place, row.isovalue, w, s);
       float read = 0.0f;
       for (unsigned q = 0; q < 8; ++q) read += w[q] * values[q] + s[q] * slopes[q];
       for (std::size_t t = 0; t < kTerms; ++t) read += row.openness[t] * terms[t];
@@ -279,12 +213,12 @@ FitVector FitSystem::diagonal(const FitDamping& damping) const {
   FitVector d = zero();
   std::fill(d.values.begin(), d.values.end(), float(damping.value));
   std::fill(d.slopes.begin(), d.slopes.end(), float(damping.slope));
-  std::vector<Terms> layers(std::size_t(cells().z), Terms{});
-  for_each_cell([&](const Corners& corners, std::span<const Row> rows, std::size_t layer) {
+  std::vector<Terms> layers(std::size_t(texels_->cells().z), Terms{});
+  for_each_cell([&](const FitCorners& corners, std::span<const Row> rows, std::size_t layer) {
     std::array<float, 8> w{};
     std::array<float, 8> s{};
     for (const Row& row : rows) {
-      corners.weights(row, w, s);
+      corners.weights(row.place, row.isovalue, w, s);
       for (unsigned q = 0; q < 8; ++q) {
         d.values[corners.texel[q]] += w[q] * w[q];
         if (!d.slopes.empty()) d.slopes[corners.texel[q]] += s[q] * s[q];

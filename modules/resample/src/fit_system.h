@@ -5,9 +5,11 @@
 #include <isolux/core/sample_set.h>
 
 #include <array>
+#include <optional>
 #include <span>
 #include <vector>
 
+#include "fit_texels.h"
 #include "near_field.h"
 
 namespace isolux {
@@ -15,10 +17,11 @@ namespace isolux {
 /// Steps of the near-field terms, in mean grid spacings: one and two are as much as reads fast (docs/resampling.md).
 inline constexpr std::array<double, 2> kNearFieldSteps = {1.0, 2.0};
 
-/// What a fit solves for, or any vector of that shape: a value and a slope a texel and a few weights for all.
+/// What a fit solves for, or any vector of that shape: a value and a slope for each texel used and a few weights for
+/// all.
 struct FitVector {
   std::vector<float> values;
-  std::vector<float> slopes;                           ///< per unit of FitSystem::breadths(); empty without slopes
+  std::vector<float> slopes;                           ///< per unit of the texels' breadths; empty without slopes
   std::array<double, kNearFieldSteps.size()> terms{};  ///< zero without near field
 };
 
@@ -28,7 +31,6 @@ struct FitDamping {
   double slope = 0.0;
 };
 
-enum class SlopeTerms { kNone, kByIsovalue };
 enum class NearFieldUse { kNone, kFitted };
 
 /// The linear least squares problem of texels that, read as LightReader does, give the samples: A is the reading, one
@@ -50,8 +52,7 @@ class FitSystem {
   /// The diagonal of A^T A + damping.
   [[nodiscard]] FitVector diagonal(const FitDamping& damping) const;
 
-  /// For each texel the isovalue span that counts as one in its slope: half the range of f over the texel's support.
-  [[nodiscard]] std::span<const float> breadths() const { return breadths_; }
+  [[nodiscard]] const FitTexels& texels() const { return *texels_; }
   /// Mean openness over the samples.
   [[nodiscard]] const std::array<double, kNearFieldSteps.size()>& mean_openness() const { return mean_openness_; }
   [[nodiscard]] std::span<const double> steps() const { return steps_; }
@@ -63,12 +64,9 @@ class FitSystem {
     std::array<float, kNearFieldSteps.size()> openness;  ///< less the mean
     std::uint32_t sample;
   };
-  struct Corners;
 
-  void measure_texels(const Volume& volume, const Run& run);
-  void sort_rows(const SampleSet& samples, const Run& run);
+  void sort_rows(const Volume& volume, const SampleSet& samples, const Lattice& texels, const Run& run);
   void measure_near_field(const Volume& volume, const SampleSet& samples, const Run& run);
-  [[nodiscard]] Index3 cells() const;
   /// Calls visit(corners, rows, layer) for every cell with rows.
   template <class Visit>
   void for_each_cell(const Visit& visit) const;
@@ -76,15 +74,12 @@ class FitSystem {
   [[nodiscard]] std::array<double, kNearFieldSteps.size()> sum_layers(
       const std::vector<std::array<double, kNearFieldSteps.size()>>& layers) const;
 
-  Lattice texels_;
-  IndexToWorld volume_to_texels_;
   SlopeTerms slope_terms_;
   NearFieldUse near_field_;
   const Run& run_;
-  std::vector<float> isovalues_;  ///< f at the texel centres
-  std::vector<float> breadths_;
   std::vector<std::uint32_t> starts_;  ///< of each cell's rows, and the end
   std::vector<Row> rows_;
+  std::optional<FitTexels> texels_;
   std::array<double, kNearFieldSteps.size()> mean_openness_{};
   std::array<double, kNearFieldSteps.size()> steps_ = kNearFieldSteps;
 };

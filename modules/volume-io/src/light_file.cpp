@@ -39,6 +39,17 @@ std::vector<NearFieldTerm> parse_near_field(const std::string& path, const std::
   return terms;
 }
 
+/// "LOW:HIGH"
+ValueRange parse_isovalues(const std::string& path, const std::string& text) {
+  const std::size_t colon = text.find(':');
+  if (colon == std::string::npos) {
+    throw InvalidInput(fmt::format("{}: isolux.iso_range '{}'; LOW:HIGH is wanted", path, text));
+  }
+  const std::string what = path + ": isolux.iso_range";
+  return {.low = float(parse_number(what, text.substr(0, colon))),
+          .high = float(parse_number(what, text.substr(colon + 1)))};
+}
+
 /// Of each texel the values of its channels, then their slopes.
 std::vector<float> interleave(const IlluminationGrid& grid) {
   const auto channels = std::size_t(grid.channels);
@@ -106,6 +117,9 @@ LightFile read_light(const std::string& path) {
   }
   if (const auto it = light.metadata.find("isolux.light_ceiling"); it != light.metadata.end()) {
     light.grid.detail.ceiling = float(parse_number(path + ": isolux.light_ceiling", it->second));
+  }
+  if (const auto it = light.metadata.find("isolux.iso_range"); it != light.metadata.end()) {
+    light.grid.detail.isovalues = parse_isovalues(path, it->second);
   }
   return light;
 }

@@ -2,5 +2,6 @@
 #pragma once
 
 #include <isolux/resample/fill_unlit.h>
+#include <isolux/resample/light_bricks.h>
 #include <isolux/resample/light_reader.h>
 #include <isolux/resample/resampler.h>

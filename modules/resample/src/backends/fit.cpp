@@ -130,11 +130,13 @@ class Fit final : public Resampler {
     const FitVector prior = system.prior(light, coverage);
     const FitVector x = solve(system, light, damping, prior);
     LightDetail& detail = result.grid.detail;
-    for (std::size_t t = 0; t < coverage.size(); ++t) {
-      if (!(coverage[t] > 0.0f)) continue;
+    const FitTexels& texels = system.texels();
+    for (std::size_t n = 0; n < coverage.size(); ++n) {
+      if (!(coverage[n] > 0.0f)) continue;
+      const std::size_t t = texels.offsets()[n];
       result.lit[t] = 1;
-      result.grid.values[t * channels + first] = prior.values[t] + x.values[t];
-      if (options_.slopes) detail.slopes[t * channels + first] = x.slopes[t] / system.breadths()[t];
+      result.grid.values[t * channels + first] = prior.values[n] + x.values[n];
+      if (options_.slopes) detail.slopes[t * channels + first] = x.slopes[n] * texels.inverse_breadths()[n];
     }
     for (std::size_t t = 0; t < detail.near_field.size(); ++t) {
       Vec3f& weight = detail.near_field[t].weight;

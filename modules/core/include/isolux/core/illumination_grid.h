@@ -1,9 +1,11 @@
 #pragma once
 
 #include <isolux/core/lattice.h>
+#include <isolux/core/volume.h>
 
 #include <cstddef>
 #include <limits>
+#include <optional>
 #include <vector>
 
 namespace isolux {
@@ -21,6 +23,7 @@ struct LightDetail {
   std::vector<float> slopes;  ///< change of e per unit of the isovalue about each texel, in the order of the values
   std::vector<NearFieldTerm> near_field;
   float ceiling = std::numeric_limits<float>::infinity();  ///< no light is above it (nor below 0)
+  std::optional<ValueRange> isovalues{};  ///< the level sets that were lit; texels that none of them touches may be 0
 
   [[nodiscard]] bool empty() const { return slopes.empty() && near_field.empty(); }
 };

@@ -2,11 +2,18 @@
 
 #include <isolux/core/illumination_grid.h>
 #include <isolux/core/volume.h>
+#include <isolux/resample/light_bricks.h>
 
 #include <memory>
 #include <vector>
 
 namespace isolux {
+
+/// How a reader holds the texels.
+enum class TexelStorage {
+  kDense,  ///< all of them: offsets() and slopes() are the whole grid's
+  kBricks  ///< those of the light's own range of isovalues in bricks where that is smaller: bricks() are what there is
+};
 
 /// Reads an illumination grid the best way known, with the volume at hand:
 ///
@@ -17,7 +24,7 @@ namespace isolux {
 class LightReader {
  public:
   /// One pass over the grid. \throw InvalidInput if the detail does not match the grid.
-  LightReader(const Volume& volume, const IlluminationGrid& light);
+  LightReader(const Volume& volume, const IlluminationGrid& light, TexelStorage storage = TexelStorage::kDense);
   ~LightReader();
   LightReader(LightReader&&) noexcept;
   LightReader& operator=(LightReader&&) noexcept;
@@ -29,10 +36,14 @@ class LightReader {
   /// e at a world position.
   [[nodiscard]] Vec3f at_world(const Vec3& world) const;
 
-  /// V of the formula, in the layout of `light.values`: what a shader samples with hardware filtering.
+  /// V of the formula, in the layout of `light.values`: what a shader samples with hardware filtering. Without values
+  /// where there are bricks().
   [[nodiscard]] const IlluminationGrid& offsets() const;
-  /// S of the formula in the same layout; empty without slopes.
+  /// S of the formula in the same layout; empty without slopes, or where there are bricks().
   [[nodiscard]] const std::vector<float>& slopes() const;
+  /// V and S in bricks; null unless asked for and smaller. Level sets outside the light's range are then dark where no
+  /// brick is.
+  [[nodiscard]] const LightBricks* bricks() const;
   /// h0 of the formula.
   [[nodiscard]] float reference_isovalue() const;
 
