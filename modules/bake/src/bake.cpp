@@ -9,6 +9,7 @@
 #include <cmath>
 #include <utility>
 
+#include "resampling_choice.h"
 #include "standard_error.h"
 
 namespace isolux {
@@ -65,13 +66,12 @@ Lattice texel_lattice(const Lattice& volume, const BakeSettings& settings) {
     }
     return voxel_lattice(volume);
   }
-  return settings.texels ? cell_lattice(volume, *settings.texels) : cell_lattice(volume);
+  if (settings.texels) return cell_lattice(volume, *settings.texels);
+  return cell_lattice(volume, (volume.size - 1) * std::max(1, settings.texels_a_cell));
 }
 
 BakeSettings with_defaults(BakeSettings settings, const Stages& stages) {
-  if (settings.sampler.name.empty()) settings.sampler.name = settings.samples == 0 ? "texels" : "low_discrepancy";
-  if (settings.resampler.name.empty())
-    settings.resampler.name = settings.sampler.name == "texels" ? "direct" : "cell_grid";
+  choose_resampling(settings);
   if (settings.bounce_method == BounceMethod::kDefault) {
     const bool iterated =
         settings.tracer.name.empty() && settings.resampler.name == "direct" && settings.trace.bounces != 0;
@@ -95,6 +95,7 @@ BakeResult bake(const Volume& volume, const Scene& scene, const BakeSettings& gi
   Sites sites = sampler->sample(volume,
                                 {.texels = texels,
                                  .count = settings.samples,
+                                 .per_texel = sites_a_texel(volume.lattice(), texels, settings),
                                  .isovalues = settings.isovalues,
                                  .outer = scene.outer,
                                  .gradient = settings.trace.gradient},
@@ -112,7 +113,8 @@ BakeResult bake(const Volume& volume, const Scene& scene, const BakeSettings& gi
   const Stopwatch resample_watch;
   ResampledGrid partial = resampler->resample(volume, samples, texels, run);
   result.unlit_texels = std::size_t(std::count(partial.lit.begin(), partial.lit.end(), std::uint8_t(0)));
-  result.light = fill_unlit(std::move(partial), run);
+  result.light = fill_unlit(std::move(partial), run, fill_for(settings));
+  result.light.detail.isovalues = settings.isovalues;
   result.seconds["resample"] = resample_watch.seconds();
   return result;
 }

@@ -36,8 +36,10 @@ struct BakeSettings {
   TraceSettings trace;
   BounceMethod bounce_method = BounceMethod::kDefault;
   TexelLattice lattice = TexelLattice::kCells;
-  std::optional<Index3> texels;         ///< of kCells only; default one a cell
-  std::size_t samples = 0;              ///< sites of scattering samplers; 0: one a texel
+  std::optional<Index3> texels;  ///< of kCells only; default texels_a_cell
+  int texels_a_cell = 0;         ///< on each axis, of kCells; 0: what suits the resampler
+  std::size_t samples = 0;       ///< sites of scattering samplers; 0: sites_a_cell
+  double sites_a_cell = 0.0;     ///< of the cells that can be lit; 0: what suits the resampler, one a texel mostly
   std::optional<ValueRange> isovalues;  ///< light only these level sets
 };
 
@@ -52,9 +54,10 @@ struct BakeResult {
   std::map<std::string, double> seconds;  ///< by stage: sites, trace, bounces (of kIterated), resample
 };
 
-/// `settings` with every backend named: sites at the texels and the direct resampler, or, where a number of samples or
-/// another sampler is asked for, low-discrepancy sites and Shepard's interpolation over a cell grid; the default
-/// tracer.
+/// `settings` with every backend named and what they want filled in (docs/resampling.md): sites at the texels and the
+/// direct resampler; where the isovalues are known, sites on their level sets and a least-squares fit, for one isovalue
+/// of two texels an axis; where a number of samples or another sampler is asked for, low-discrepancy sites and
+/// Shepard's interpolation over a cell grid; the default tracer.
 [[nodiscard]] BakeSettings with_defaults(BakeSettings settings, const Stages& stages);
 
 /// Lights all level sets of a volume at once, with_defaults(). The same bits for any number of threads.

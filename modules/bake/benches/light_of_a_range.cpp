@@ -1,0 +1,146 @@
+// How wrong is the light of a known range of isovalues, a tenth of the volume's, or of a known isovalue, each baked by
+// itself? References lie on three isosurfaces of a range, on the one otherwise. Counters as in light_on_surface, and
+// what the light takes in bricks of four texels an axis with a shared border: numbers stored a voxel of the whole
+// volume, median and 80th percentile over the bakes.
+#include <benchmark/benchmark.h>
+
+#include <map>
+#include <memory>
+
+#include "surface_cases.h"
+
+namespace {
+
+using namespace isolux;
+using namespace isolux::bench;
+
+struct Case {
+  std::shared_ptr<const Volume> whole;
+  std::shared_ptr<const Volume> block;
+  ValueRange range;
+  std::vector<SampleSet> references;
+};
+
+/// One bake an isosurface of every volume, `width` of the whole range of values wide.
+std::vector<Case> make_cases(float width) {
+  std::vector<Case> cases;
+  for (const Source& source : sources()) {
+    const auto whole = std::make_shared<const Volume>(read_volume(source.name));
+    const auto block = std::make_shared<const Volume>(busiest_block(*whole, source.isovalues));
+    const ValueRange all = value_range(*whole);
+    const float half = 0.5f * width * (all.high - all.low);
+    for (const float h : source.isovalues) {
+      Case c{.whole = whole, .block = block, .range = {h - half, h + half}, .references = {}};
+      std::vector<float> levels{h};
+      if (half > 0.0f) levels = {h - 0.8f * half, h, h + 0.8f * half};
+      for (const float level : levels) {
+        std::vector<Vec3f> points = surface_points(*block, level, kPoints, 11);
+        if (points.size() < kPoints / 4) continue;
+        Sites sites = make_sites(*block, std::move(points), {}, {});
+        c.references.push_back(trace(*block, std::move(sites), kReferenceRays, 1000 + c.references.size()));
+      }
+      if (!c.references.empty()) cases.push_back(std::move(c));
+    }
+  }
+  return cases;
+}
+
+const std::vector<Case>& cases(float width) {
+  static std::map<float, std::vector<Case>> all;
+  const auto it = all.find(width);
+  return it != all.end() ? it->second : all.emplace(width, make_cases(width)).first->second;
+}
+
+struct Scheme {
+  float width;  ///< of the range, in parts of the volume's
+  std::string sampler;
+  double sites;  ///< a crossed cell
+  int rays;
+  int texels;  ///< a cell and axis
+  Settings settings;
+};
+
+/// Texels in the bricks that the range needs, a voxel of the whole volume.
+double brick_texels_a_voxel(const Case& c, int texels, int brick) {
+  const Index3 cells = c.whole->lattice().size - 1;
+  const Index3 bricks = (cells * texels + (brick - 1)) / brick;
+  std::vector<std::uint8_t> needed(std::size_t(bricks.x) * std::size_t(bricks.y) * std::size_t(bricks.z), 0);
+  for (int k = 0; k < cells.z; ++k)
+    for (int j = 0; j < cells.y; ++j)
+      for (int i = 0; i < cells.x; ++i) {
+        const ValueRange own = cell_range(*c.whole, {i, j, k});
+        if (own.low == own.high || own.low > c.range.high || own.high < c.range.low) continue;
+        // Texels are read between the centres before and behind the cell.
+        const Index3 low = glm::max(Index3(i, j, k) * texels - 1, Index3(0)) / brick;
+        const Index3 high = glm::min((Index3(i, j, k) + 1) * texels - 1, cells * texels - 1) / brick;
+        for (int z = low.z; z <= high.z; ++z)
+          for (int y = low.y; y <= high.y; ++y)
+            for (int x = low.x; x <= high.x; ++x)
+              needed[(std::size_t(z) * std::size_t(bricks.y) + std::size_t(y)) * std::size_t(bricks.x) +
+                     std::size_t(x)] = 1;
+      }
+  const auto count = double(std::count(needed.begin(), needed.end(), std::uint8_t(1)));
+  return count * std::pow(brick + 1, 3) / double(c.whole->lattice().count());
+}
+
+void light_of_a_range(benchmark::State& state, const Scheme& scheme) {
+  const auto resampler = resamplers().create("fit", scheme.settings);
+  const double numbers = scheme.settings.count("slopes") != 0 ? 1.0 : 2.0;
+  SurfaceErrors errors;
+  std::vector<double> stored;
+  for (auto _ : state) {
+    errors = {};
+    stored.clear();
+    state.PauseTiming();
+    for (const Case& c : cases(scheme.width)) {
+      const Index3 cells = c.block->lattice().size - 1;
+      const Lattice texels = cell_lattice(c.block->lattice(), cells * scheme.texels);
+      const SiteRequest request{
+          .texels = texels, .per_texel = scheme.sites / std::pow(scheme.texels, 3), .isovalues = c.range};
+      const SampleSet samples =
+          trace(*c.block, samplers().create(scheme.sampler)->sample(*c.block, request, {.seed = 3}), scheme.rays, 5);
+      if (samples.size() == 0) continue;
+      state.ResumeTiming();
+      ResampledGrid partial = resampler->resample(*c.block, samples, texels, {});
+      state.PauseTiming();
+      const IlluminationGrid light = fill_unlit(std::move(partial), {});
+      const LightReader reader(*c.block, light);
+      SampleSet pooled;
+      for (const SampleSet& reference : c.references) append(pooled, reference);
+      errors.add(reader, pooled);
+      stored.push_back(numbers * brick_texels_a_voxel(c, scheme.texels, 4));
+    }
+    state.ResumeTiming();
+  }
+  state.counters["median"] = percentile(errors.rms, 0.5);
+  state.counters["p80"] = percentile(errors.rms, 0.8);
+  state.counters["bias"] = percentile(errors.bias, 0.5);
+  state.counters["a_voxel"] = percentile(stored, 0.5);
+  state.counters["a_voxel_p80"] = percentile(stored, 0.8);
+}
+
+const int kRegistered = [] {
+  const Settings value{{"slopes", "false"}};
+  const Settings plain{{"slopes", "false"}, {"near_field", "false"}};
+  const std::vector<std::pair<std::string, Scheme>> schemes{
+      {"range/stratified_4x64", {0.1f, "stratified", 4, 64, 1, {}}},
+      {"range/4x64", {0.1f, "level_sets", 4, 64, 1, {}}},
+      {"range/8x64", {0.1f, "level_sets", 8, 64, 1, {}}},
+      {"range/4x64_value", {0.1f, "level_sets", 4, 64, 1, value}},
+      {"range/8x64_2_an_axis_value", {0.1f, "level_sets", 8, 64, 2, value}},
+      {"one/4x64_plain", {0.0f, "level_sets", 4, 64, 1, plain}},
+      {"one/4x64_value", {0.0f, "level_sets", 4, 64, 1, value}},
+      {"one/4x64", {0.0f, "level_sets", 4, 64, 1, {}}},
+      {"one/8x64", {0.0f, "level_sets", 8, 64, 1, {}}},
+      {"one/8x64_2_an_axis_value", {0.0f, "level_sets", 8, 64, 2, value}},
+      {"one/16x64_2_an_axis_value", {0.0f, "level_sets", 16, 64, 2, value}},
+  };
+  for (const auto& [name, scheme] : schemes) {
+    benchmark::RegisterBenchmark(("light_of_a_range/" + name).c_str(), light_of_a_range, scheme)
+        ->Unit(benchmark::kMillisecond)
+        ->Iterations(1);
+  }
+  return int(schemes.size());
+}();
+
+}  // namespace

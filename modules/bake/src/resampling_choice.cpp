@@ -1,0 +1,54 @@
+#include "resampling_choice.h"
+
+namespace isolux {
+namespace {
+
+// docs/resampling.md has the curves behind these.
+constexpr double kFitSites = 8.0;
+constexpr double kRangeSites = 4.0;
+constexpr double kOneIsovalueSites = 8.0;
+constexpr int kOneIsovalueTexels = 2;
+/// A cell that a level set only just cuts may get no site; its texels are next to lit ones.
+constexpr int kFilledLayers = 2;
+
+bool one_isovalue(const BakeSettings& settings) {
+  return settings.isovalues && settings.isovalues->low == settings.isovalues->high;
+}
+
+}  // namespace
+
+void choose_resampling(BakeSettings& settings) {
+  const bool free_choice = settings.sampler.name.empty() && settings.resampler.name.empty();
+  const bool known_levels = settings.isovalues && settings.lattice == TexelLattice::kCells;
+  if (free_choice && known_levels) settings.resampler.name = "fit";
+  const bool fit = settings.resampler.name == "fit";
+  if (settings.sampler.name.empty()) {
+    if (fit) {
+      settings.sampler.name = settings.isovalues ? "level_sets" : "stratified";
+    } else {
+      settings.sampler.name = settings.samples == 0 ? "texels" : "low_discrepancy";
+    }
+  }
+  if (settings.resampler.name.empty())
+    settings.resampler.name = settings.sampler.name == "texels" ? "direct" : "cell_grid";
+  if (settings.texels_a_cell == 0) settings.texels_a_cell = fit && one_isovalue(settings) ? kOneIsovalueTexels : 1;
+  // All sites of one isovalue say nothing of how light changes with it.
+  if (fit && one_isovalue(settings)) settings.resampler.settings.try_emplace("slopes", "false");
+  if (settings.sites_a_cell == 0.0 && fit) {
+    settings.sites_a_cell = one_isovalue(settings) ? kOneIsovalueSites : settings.isovalues ? kRangeSites : kFitSites;
+  }
+}
+
+double sites_a_texel(const Lattice& volume, const Lattice& texels, const BakeSettings& settings) {
+  if (settings.sites_a_cell == 0.0) return 1.0;
+  double sites = settings.sites_a_cell;
+  for (int a = 0; a < 3; ++a) sites *= double(volume.size[a] - 1) / double(texels.size[a]);
+  return sites;
+}
+
+FillSettings fill_for(const BakeSettings& settings) {
+  if (settings.isovalues && settings.resampler.name == "fit") return {.layers = kFilledLayers};
+  return {};
+}
+
+}  // namespace isolux
