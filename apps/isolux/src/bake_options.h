@@ -17,6 +17,7 @@ class TraceOptions {
   void add_to(CLI::App& command);
   /// \throw UsageError, IoError, InvalidInput
   [[nodiscard]] Scene scene() const;
+  [[nodiscard]] bool scene_given() const { return !scene_.empty(); }
   [[nodiscard]] TraceSettings settings() const;
   [[nodiscard]] const std::string& tracer() const { return tracer_; }
 

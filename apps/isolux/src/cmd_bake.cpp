@@ -95,7 +95,9 @@ void run_bake(const Options& options, Session& session) {
       double(result.counters.rays) * 1e-6 / trace_seconds, result.rmse_estimate));
   session.timed("write", [&] {
     const LightFile light = make_light_file(std::move(result), volume, scene, settings, session.run);
-    write_light(light, options.output, volume.space, {.compress = options.compress});
+    // Where the level sets are known most texels are 0: gzip leaves little of them.
+    const bool sparse = settings.isovalues && settings.resampler.name == "fit";
+    write_light(light, options.output, volume.space, {.compress = options.compress || sparse});
   });
 }
 
@@ -107,7 +109,10 @@ void add_bake_command(CLI::App& program, Session& session) {
   options->volume.add_to(command);
   command.add_option("-o,--output", options->output, "the light to write")->required()->type_name("LIGHT.nrrd");
   options->trace.add_to(command);
-  command.add_option("--iso-range", options->iso_range, "light only these level sets")->type_name("LO:HI");
+  command
+      .add_option("--iso-range", options->iso_range,
+                  "light only these level sets, more accurately: LO:HI, or H:H for one")
+      ->type_name("LO:HI");
   command.add_option("--texels", options->texels, "size of the light's grid (default: one texel a cell)")
       ->type_name("NXxNYxNZ");
   command.add_option("--lattice", options->lattice, "texels at the cell centres (default) or at the voxels")
@@ -129,7 +134,8 @@ void add_bake_command(CLI::App& program, Session& session) {
       .add_option("--set", options->set,
                   "an option of a backend: sampler.KEY=VALUE, tracer.KEY=VALUE or resampler.KEY=VALUE")
       ->type_name("stage.key=value");
-  command.add_flag("--compress", options->compress, "gzip the light");
+  command.add_flag("--compress", options->compress,
+                   "gzip the light (always where --iso-range leaves most of it empty)");
   session.add_common_options(command);
   command.callback([options, &session] { session.on_run([options, &session] { run_bake(*options, session); }); });
 }

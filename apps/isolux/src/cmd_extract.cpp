@@ -45,11 +45,15 @@ std::vector<Vec3f> positions(const IsoMesh& mesh) {
 
 Rgb8 colour(const Vec3f& radiance) { return {srgb_code(radiance.x), srgb_code(radiance.y), srgb_code(radiance.z)}; }
 
-std::vector<Rgb8> exact_colours(const IsoMesh& mesh, const Volume& volume, const Scene& scene, const Options& options,
-                                Session& session) {
+/// Light traced at the vertices, with a baked one as control variate if there is one.
+std::vector<Rgb8> exact_colours(const IsoMesh& mesh, const Volume& volume, const Scene& scene,
+                                const std::optional<LightFile>& baked, const Options& options, Session& session) {
   const PointLight light = session.timed("trace", [&] {
-    return light_points(volume, scene, positions(mesh), options.trace.settings(), {options.trace.tracer(), {}},
-                        session.stages, session.run);
+    const BackendChoice tracer{options.trace.tracer(), {}};
+    const TraceSettings settings = options.trace.settings();
+    if (!baked) return light_points(volume, scene, positions(mesh), settings, tracer, session.stages, session.run);
+    const LightReader reader(volume, baked->grid, TexelStorage::kBricks);
+    return light_points(volume, scene, positions(mesh), settings, tracer, session.stages, session.run, reader);
   });
   session.report["rays"] = light.counters.rays;
   session.report["rmse_estimate"] = light.rmse_estimate;
@@ -60,7 +64,7 @@ std::vector<Rgb8> exact_colours(const IsoMesh& mesh, const Volume& volume, const
 }
 
 std::vector<Rgb8> baked_colours(const IsoMesh& mesh, const Volume& volume, const LightFile& light, float isovalue) {
-  const LightReader reader(volume, light.grid);
+  const LightReader reader(volume, light.grid, TexelStorage::kBricks);
   const Vec3f albedo = light_albedo(light, isovalue);
   std::vector<Rgb8> colours;
   for (const Vec3f& p : positions(mesh)) {
@@ -74,16 +78,25 @@ OuterSide outer_side(const Options& options, OuterSide otherwise) {
   return options.outer == "higher" ? OuterSide::kHigher : OuterSide::kLower;
 }
 
+/// The scene given, else that of the light, where exact light is to agree with it.
+Scene scene_for(const Options& options, const std::optional<LightFile>& light) {
+  if (options.exact_light && light && !options.trace.scene_given()) {
+    auto scene = light_scene(*light);
+    if (!scene) throw UsageError("--exact-light: the light does not tell its whole scene; give it with --scene");
+    return *std::move(scene);
+  }
+  return options.trace.scene();
+}
+
 void run_extract(const Options& options, Session& session) {
-  if (options.light.given() && options.exact_light) throw UsageError("--light and --exact-light: give one of them");
   BackendChoice choice{options.backend, {}};
   apply_settings(options.set, {{"extractor", &choice.settings}});
   require_choice(session.stages.extractors, choice);
   require_choice(session.stages.tracers, {options.trace.tracer(), {}});
   const Volume volume = options.volume.read(session);
-  const Scene scene = options.trace.scene();
   std::optional<LightFile> light;
   if (options.light.given()) light = options.light.read(volume, session);
+  const Scene scene = scene_for(options, light);
   warn_outside_range(volume, options.isovalue, session);
 
   const OuterSide outer = outer_side(options, light ? light_outer(*light) : scene.outer);
@@ -98,8 +111,11 @@ void run_extract(const Options& options, Session& session) {
                               session.run);
   });
   std::vector<Rgb8> colours;
-  if (light) colours = session.timed("light", [&] { return baked_colours(mesh, volume, *light, options.isovalue); });
-  if (options.exact_light) colours = exact_colours(mesh, volume, scene, options, session);
+  if (options.exact_light) {
+    colours = exact_colours(mesh, volume, scene, light, options, session);
+  } else if (light) {
+    colours = session.timed("light", [&] { return baked_colours(mesh, volume, *light, options.isovalue); });
+  }
   session.timed("write", [&] {
     write_atomically_by_name(options.output, [&](const std::string& path) { write_mesh(mesh, colours, path); });
   });
@@ -128,8 +144,9 @@ void add_extract_command(CLI::App& program, Session& session) {
       ->required()
       ->type_name("MESH.ply");
   options->light.add_to(command);
-  command.add_flag("--exact-light", options->exact_light,
-                   "trace the light at the vertices instead of reading it from a file");
+  command.add_flag(
+      "--exact-light", options->exact_light,
+      "trace the light at the vertices; with --light too, that light's scene is taken and far fewer rays do");
   options->trace.add_to(command);
   command
       .add_option("--outer", options->outer,

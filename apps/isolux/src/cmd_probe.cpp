@@ -84,7 +84,7 @@ void run_probe(const Options& options, Session& session) {
   const LightFile light = options.light.read(volume, session);
   const std::vector<Vec3> points = session.timed("read", [&] { return read_points(options.points); });
   const TrilinearField field(volume);
-  const LightReader reader(volume, light.grid);
+  const LightReader reader(volume, light.grid, TexelStorage::kBricks);
   std::size_t outside = 0;
   session.timed("write", [&] {
     write_atomically(options.output, [&](std::ostream& out) {

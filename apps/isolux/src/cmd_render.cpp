@@ -57,7 +57,7 @@ void run_render(const Options& options, Session& session) {
   Image image = session.timed("render", [&]() -> Image {
     if (mode == "normal") return draw(normal_shader());
     if (mode == "local") return draw(local_shader(albedo));
-    const LightReader reader(volume, light->grid);
+    const LightReader reader(volume, light->grid, TexelStorage::kBricks);
     const LightAt at = [&](const SurfacePoint& point) {
       return reader.at_index(point.index, double(options.isovalue));
     };

@@ -82,6 +82,16 @@ void require_light_of(const LightFile& light, const Volume& volume, const std::s
   }
 }
 
+std::optional<Scene> light_scene(const LightFile& light) {
+  const auto it = light.metadata.find("isolux.scene");
+  if (it == light.metadata.end()) return std::nullopt;
+  const auto json = nlohmann::json::parse(it->second, nullptr, false);
+  if (!json.is_object()) return std::nullopt;
+  const auto environment = json.find("environment");
+  if (environment != json.end() && environment->value("type", "") == "image") return std::nullopt;
+  return parse_scene(it->second, "", "isolux.scene of the light");
+}
+
 Vec3f light_albedo(const LightFile& light, float isovalue) {
   return scene_of(light).value_or(Scene{}).albedo.at(isovalue);
 }

@@ -3,6 +3,8 @@
 #include <isolux/bake/bake.h>
 #include <isolux/volume_io/light_file.h>
 
+#include <optional>
+
 namespace isolux {
 
 /// The bake's result as a file: grid and the key/value pairs isolux.version, .quantity, .scene, .settings,
@@ -18,6 +20,9 @@ void require_light_of(const LightFile& light, const Volume& volume, const std::s
 
 /// The albedo that the light's scene gives this isovalue; 0.8 where the file says nothing.
 [[nodiscard]] Vec3f light_albedo(const LightFile& light, float isovalue);
+
+/// The scene that the light was baked in; nothing where the file does not tell all of it (an image environment).
+[[nodiscard]] std::optional<Scene> light_scene(const LightFile& light);
 
 /// The outer side that the light was baked for.
 [[nodiscard]] OuterSide light_outer(const LightFile& light);
