@@ -146,7 +146,7 @@ void add_extract_command(CLI::App& program, Session& session) {
   options->light.add_to(command);
   command.add_flag(
       "--exact-light", options->exact_light,
-      "trace the light at the vertices; with --light too, that light's scene is taken and far fewer rays do");
+      "trace the light at the vertices; with --light too, that light's scene is taken and half the rays do");
   options->trace.add_to(command);
   command
       .add_option("--outer", options->outer,
