@@ -4,10 +4,12 @@
 #include <isolux/mc_extract.h>
 #include <isolux/volume_io/read.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <map>
 #include <memory>
 #include <string>
+#include <vector>
 
 #ifdef ISOLUX_BENCH_VTK
 #include <SMP/Common/vtkSMPToolsAPI.h>  // vtkSMPTools.h of VTK 9.1 is not C++20
@@ -34,11 +36,16 @@ constexpr Subject kSubjects[] = {{"gyroid256", "gen:gyroid:256", 0.1f},
                                  {"engine", "engine.nrrd", 110.0f},
                                  {"bonsai", "bonsai.nrrd", 40.0f}};
 
+/// Small surfaces (about 10^5 triangles) in large volumes: what a search has to find. In one place, and everywhere.
+constexpr Subject kSparseSubjects[] = {{"sphere512", "gen:sphere:512", -0.12f},
+                                       {"gyroid512", "gen:gyroid:512", 1.49f}};
+
 /// The volume of a subject, read once; null where its file is not there.
 const Volume* volume_of(const Subject& subject) {
   static std::map<std::string, std::unique_ptr<Volume>> volumes;
   std::unique_ptr<Volume>& volume = volumes[subject.name];
   if (volume != nullptr) return volume.get();
+  std::erase_if(volumes, [&](const auto& other) { return other.second != nullptr; });  // one at a time fits
   std::string source = subject.source;
   if (!source.starts_with("gen:")) {
     const char* folder = std::getenv("ISOLUX_DATA");
@@ -89,6 +96,40 @@ void kept(benchmark::State& state, const Subject& subject, IsoExtractor::Index i
   report(state, triangle_count(mesh));
 }
 
+/// 50 isovalues through the middle 90 % of the range; the time is of one.
+constexpr int kSweep = 50;
+
+std::vector<float> sweep_isovalues(const Volume& volume) {
+  const auto [low, high] = std::ranges::minmax(volume.values.values());
+  std::vector<float> isovalues;
+  for (int n = 0; n < kSweep; ++n)
+    isovalues.push_back(low + (high - low) * (0.05f + 0.9f * float(n) / float(kSweep - 1)));
+  return isovalues;
+}
+
+void report_sweep(benchmark::State& state, std::size_t triangles) {
+  report(state, triangles);
+  state.counters["ms_each"] = benchmark::Counter(
+      double(kSweep) * 1e-3, benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
+}
+
+void sweep(benchmark::State& state, const Subject& subject, IsoExtractor::Index index) {
+  const Volume* volume = volume_of(subject);
+  if (volume == nullptr) return state.SkipWithError("ISOLUX_DATA is not set");
+  const std::vector<float> isovalues = sweep_isovalues(*volume);
+  IsoExtractor extractor(*volume, run_of(state), index);
+  IndexedMesh mesh;
+  std::size_t triangles = 0;
+  for (auto _ : state) {
+    triangles = 0;
+    for (const float isovalue : isovalues) {
+      extractor.extract({.isovalue = isovalue}, run_of(state), mesh);
+      triangles += mesh.triangles.size();
+    }
+  }
+  report_sweep(state, triangles);
+}
+
 void index_build(benchmark::State& state, const Subject& subject) {
   const Volume* volume = volume_of(subject);
   if (volume == nullptr) return state.SkipWithError("ISOLUX_DATA is not set");
@@ -124,65 +165,103 @@ void openmesh_add_face(benchmark::State& state, const Subject& subject) {
 }
 
 #ifdef ISOLUX_BENCH_VTK
-void vtk_flying_edges(benchmark::State& state, const Subject& subject) {
-  const Volume* volume = volume_of(subject);
-  if (volume == nullptr) return state.SkipWithError("ISOLUX_DATA is not set");
-  vtk::detail::smp::vtkSMPToolsAPI::GetInstance().Initialize(int(state.range(0)));
-  const Index3 size = volume->lattice().size;
-  const auto values = vtkSmartPointer<vtkFloatArray>::New();
-  values->SetArray(const_cast<float*>(volume->values.values().data()), vtkIdType(volume->lattice().count()), 1);
-  const auto image = vtkSmartPointer<vtkImageData>::New();
-  image->SetDimensions(size.x, size.y, size.z);
-  image->GetPointData()->SetScalars(values);
-  std::size_t triangles = 0;
-  for (auto _ : state) {
+class FlyingEdges {
+ public:
+  FlyingEdges(const Volume& volume, int threads) {
+    vtk::detail::smp::vtkSMPToolsAPI::GetInstance().Initialize(threads);
+    const Index3 size = volume.lattice().size;
+    const auto values = vtkSmartPointer<vtkFloatArray>::New();
+    values->SetArray(const_cast<float*>(volume.values.values().data()), vtkIdType(volume.lattice().count()), 1);
+    image_->SetDimensions(size.x, size.y, size.z);
+    image_->GetPointData()->SetScalars(values);
+  }
+  /// Triangles of the level set, extracted with normals.
+  [[nodiscard]] std::size_t extract(float isovalue) const {
     const auto filter = vtkSmartPointer<vtkFlyingEdges3D>::New();
-    filter->SetInputData(image);
-    filter->SetValue(0, subject.isovalue);
+    filter->SetInputData(image_);
+    filter->SetValue(0, isovalue);
     filter->ComputeNormalsOn();
     filter->ComputeScalarsOff();
     filter->ComputeGradientsOff();
     filter->Update();
-    triangles = std::size_t(filter->GetOutput()->GetNumberOfPolys());
+    return std::size_t(filter->GetOutput()->GetNumberOfPolys());
   }
+
+ private:
+  vtkSmartPointer<vtkImageData> image_ = vtkSmartPointer<vtkImageData>::New();
+};
+
+void vtk_flying_edges(benchmark::State& state, const Subject& subject) {
+  const Volume* volume = volume_of(subject);
+  if (volume == nullptr) return state.SkipWithError("ISOLUX_DATA is not set");
+  const FlyingEdges flying_edges(*volume, int(state.range(0)));
+  std::size_t triangles = 0;
+  for (auto _ : state) triangles = flying_edges.extract(subject.isovalue);
   report(state, triangles);
+}
+
+void vtk_sweep(benchmark::State& state, const Subject& subject) {
+  const Volume* volume = volume_of(subject);
+  if (volume == nullptr) return state.SkipWithError("ISOLUX_DATA is not set");
+  const FlyingEdges flying_edges(*volume, int(state.range(0)));
+  const std::vector<float> isovalues = sweep_isovalues(*volume);
+  std::size_t triangles = 0;
+  for (auto _ : state) {
+    triangles = 0;
+    for (const float isovalue : isovalues) triangles += flying_edges.extract(isovalue);
+  }
+  report_sweep(state, triangles);
 }
 #endif
 
-void register_all() {
-  for (const Subject& subject : kSubjects) {
-    const auto add = [&](const std::string& what, auto function) {
-      for (const int threads : {1, 2})
-        benchmark::RegisterBenchmark((std::string(subject.name) + "/" + what).c_str(),
-                                     [function, &subject](benchmark::State& state) { function(state, subject); })
-            ->Arg(threads)
-            ->ArgName("threads")
-            ->UseRealTime()
-            ->Unit(benchmark::kMillisecond);
-    };
-    using Index = IsoExtractor::Index;
+void add(const Subject& subject, const std::string& what, auto function) {
+  for (const int threads : {1, 2})
+    benchmark::RegisterBenchmark((std::string(subject.name) + "/" + what).c_str(),
+                                 [function, &subject](benchmark::State& state) { function(state, subject); })
+        ->Arg(threads)
+        ->ArgName("threads")
+        ->UseRealTime()
+        ->Unit(benchmark::kMillisecond);
+}
+
+using Index = IsoExtractor::Index;
+
+void register_dense(const Subject& subject) {
 #ifdef ISOLUX_BENCH_VTK
-    add("vtk_flying_edges", vtk_flying_edges);
+  add(subject, "vtk_flying_edges", vtk_flying_edges);
+  add(subject, "vtk_sweep", vtk_sweep);
 #endif
-    add("indexed_fresh", fresh<IndexedMesh>);
-    add("indexed_kept", [](auto& state, auto& s) { kept<IndexedMesh>(state, s, Index::kNone); });
-    add("indexed_kept_index", [](auto& state, auto& s) { kept<IndexedMesh>(state, s, Index::kBricks); });
-    add("half_edges_fresh", fresh<IsoMesh>);
-    add("half_edges_kept", [](auto& state, auto& s) { kept<IsoMesh>(state, s, Index::kNone); });
-    add("half_edges_kept_index", [](auto& state, auto& s) { kept<IsoMesh>(state, s, Index::kBricks); });
-    add("index_build", index_build);
-    add("openmesh_add_face", openmesh_add_face);
-    const Registry<Extractor> registry = extractors();
-    for (const BackendInfo& info : registry.backends())
-      add("backend_" + info.name, [name = info.name](auto& state, auto& s) { backend(state, s, name); });
-  }
+  add(subject, "indexed_fresh", fresh<IndexedMesh>);
+  add(subject, "indexed_kept", [](auto& state, auto& s) { kept<IndexedMesh>(state, s, Index::kNone); });
+  add(subject, "indexed_kept_index", [](auto& state, auto& s) { kept<IndexedMesh>(state, s, Index::kBricks); });
+  add(subject, "half_edges_fresh", fresh<IsoMesh>);
+  add(subject, "half_edges_kept", [](auto& state, auto& s) { kept<IsoMesh>(state, s, Index::kNone); });
+  add(subject, "half_edges_kept_index", [](auto& state, auto& s) { kept<IsoMesh>(state, s, Index::kBricks); });
+  add(subject, "sweep", [](auto& state, auto& s) { sweep(state, s, Index::kNone); });
+  add(subject, "sweep_index", [](auto& state, auto& s) { sweep(state, s, Index::kBricks); });
+  add(subject, "index_build", index_build);
+  add(subject, "openmesh_add_face", openmesh_add_face);
+  const Registry<Extractor> registry = extractors();
+  for (const BackendInfo& info : registry.backends())
+    add(subject, "backend_" + info.name, [name = info.name](auto& state, auto& s) { backend(state, s, name); });
+}
+
+void register_sparse(const Subject& subject) {
+#ifdef ISOLUX_BENCH_VTK
+  add(subject, "vtk_flying_edges", vtk_flying_edges);
+#endif
+  add(subject, "indexed_kept", [](auto& state, auto& s) { kept<IndexedMesh>(state, s, Index::kNone); });
+  add(subject, "indexed_kept_index", [](auto& state, auto& s) { kept<IndexedMesh>(state, s, Index::kBricks); });
+  add(subject, "half_edges_kept_index", [](auto& state, auto& s) { kept<IsoMesh>(state, s, Index::kBricks); });
+  add(subject, "index_build", index_build);
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
   benchmark::Initialize(&argc, argv);
-  register_all();
+  for (const Subject& subject : kSubjects) register_dense(subject);
+  for (const Subject& subject : kSparseSubjects) register_sparse(subject);
   benchmark::RunSpecifiedBenchmarks();
   return 0;
 }

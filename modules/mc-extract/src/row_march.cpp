@@ -91,10 +91,11 @@ RowMarch::RowMarch(const Volume& volume) : lattice_(volume.lattice()), slabs_(st
 
 int RowMarch::layer_count() const { return (march_.nz + kLayer - 1) / kLayer; }
 
-/// Enough for every thread to have two layers, or 2 MB.
+/// Two layers, or 2 MB, a thread; where threads wait for each other twice as many, for waking them costs.
 int RowMarch::layers_at_once(const Run& run) const {
   const std::size_t bytes = sizeof(float) * std::size_t(march_.nx) * std::size_t(march_.ny) * kLayer;
-  return thread_count(run) * std::max(2, int((std::size_t(2) << 20) / bytes));
+  const int threads = thread_count(run);
+  return (threads > 1 ? 2 * threads : 1) * std::max(2, int((std::size_t(2) << 20) / bytes));
 }
 
 const CaseTable& RowMarch::cases() const {
@@ -102,11 +103,14 @@ const CaseTable& RowMarch::cases() const {
 }
 
 template <class Body>
+void RowMarch::for_slabs(int layer, const Body& body) const {
+  for (int k = layer * kLayer; k < std::min((layer + 1) * kLayer, march_.nz); ++k) body(k);
+}
+
+template <class Body>
 void RowMarch::for_each_slab(Layers layers, const Run& run, const Body& body) const {
-  parallel_blocks(std::size_t(layers.end - layers.begin), 1, run, "", [&](const Block& block) {
-    const int first = (layers.begin + int(block.begin)) * kLayer;
-    for (int k = first; k < std::min(first + kLayer, march_.nz); ++k) body(k);
-  });
+  parallel_blocks(std::size_t(layers.end - layers.begin), 1, run, "",
+                  [&](const Block& block) { for_slabs(layers.begin + int(block.begin), body); });
 }
 
 void RowMarch::march(const ExtractSettings& settings, const Run& run, const BrickIndex* index, IndexedMesh& mesh) {
@@ -116,26 +120,45 @@ void RowMarch::march(const ExtractSettings& settings, const Run& run, const Bric
   mesh.triangles.clear();
   const int layers = layer_count();
   const int step = layers_at_once(run);
-  int classified = 0;
+  // A slab is counted by the bits of the next plane too, and its cells use the next slab's numbers: classifying runs a
+  // layer ahead, triangles a layer behind.
+  int classified = std::min(step + 1, layers);
   int connected = 0;
+  classify({0, classified}, run);
   for (int first = 0; first < layers; first += step) {
-    const int last = std::min(first + step, layers);
-    // A slab is counted by the bits of the next plane too, and its cells use the next slab's numbers.
-    const int ahead = std::min(last + 1, layers);
-    classify({classified, ahead}, run);
-    classified = ahead;
-    count_layers({first, last}, run, Connectivity::kIndexed);
-    number({first, last});
-    const double done = double(last) / layers;
+    const Layers here{first, std::min(first + step, layers)};
+    count_layers(here, run, Connectivity::kIndexed);
+    number(here);
+    const double done = double(here.end) / layers;
     grow(mesh.positions, size_.vertices, done);
     grow(mesh.normals, size_.vertices, done);
     grow(mesh.triangles, size_.triangles, done);
-    if (size_.triangles == 0) continue;
-    write_vertices({first, last}, run, &mesh.positions[0].x, &mesh.normals[0].x);
-    const int behind = last == layers ? layers : last - 1;
-    write_triangles({connected, behind}, run, mesh.triangles.data());
-    connected = behind;
+    const Layers behind{connected, here.end == layers ? layers : here.end - 1};
+    const Layers ahead{classified, std::min(here.end + step + 1, layers)};
+    write_and_classify(here, behind, ahead, run, mesh);
+    connected = behind.end;
+    classified = ahead.end;
   }
+}
+
+void RowMarch::write_and_classify(Layers here, Layers behind, Layers ahead, const Run& run, IndexedMesh& mesh) {
+  // What these three do does not touch: one loop keeps threads busier than three.
+  const int vertices = here.end - here.begin;
+  const int triangles = behind.end - behind.begin;
+  const int all = vertices + triangles + ahead.end - ahead.begin;
+  parallel_blocks(std::size_t(all), 1, run, "", [&](const Block& block) {
+    const int task = int(block.begin);
+    if (task < vertices)
+      for_slabs(here.begin + task, [&](int k) {
+        if (march_.slabs[k].active_words > 0)
+          make_vertices(march_, k, frame_, &mesh.positions.data()->x, &mesh.normals.data()->x);
+      });
+    else if (task < vertices + triangles)
+      for_slabs(behind.begin + task - vertices,
+                [&](int k) { make_triangles(march_, k, cases(), mesh.triangles.data()); });
+    else
+      classify_layer(ahead.begin + task - vertices - triangles);
+  });
 }
 
 MeshSize RowMarch::count(const ExtractSettings& settings, const Run& run, const BrickIndex* index) {
@@ -162,18 +185,19 @@ void RowMarch::begin(const ExtractSettings& settings, const Run& run, const Bric
 }
 
 void RowMarch::classify(Layers layers, const Run& run) {
+  parallel_blocks(std::size_t(layers.end - layers.begin), 1, run, "",
+                  [&](const Block& block) { classify_layer(layers.begin + int(block.begin)); });
+}
+
+void RowMarch::classify_layer(int layer) {
   if (index_ == nullptr) {
-    for_each_slab(layers, run, [&](int k) {
+    for_slabs(layer, [&](int k) {
       for (int j = 0; j < march_.ny; ++j) classify_row(march_, j, k);
     });
     return;
   }
-  parallel_blocks(std::size_t(layers.end - layers.begin), 1, run, "", [&](const Block& block) {
-    const int layer = layers.begin + int(block.begin);
-    // The last grid points of an axis may have no brick of their own.
-    for (int row = 0; row < index_->rows(); ++row)
-      if (active_words_.reaches_row(row, layer)) classify_brick_row(row, layer);
-  });
+  for (int row = 0; row < index_->rows(); ++row)
+    if (active_words_.reaches_row(row, layer)) classify_brick_row(row, layer);
 }
 
 void RowMarch::classify_brick_row(int row, int layer) {
@@ -241,16 +265,8 @@ void RowMarch::number(Layers layers) {
   require_countable(size_, march_.isovalue);
 }
 
-void RowMarch::write_vertices(Layers layers, const Run& run, float* positions, float* normals) const {
-  for_each_slab(layers, run, [&](int k) { make_vertices(march_, k, frame_, positions, normals); });
-}
-
-void RowMarch::write_triangles(Layers layers, const Run& run, Triangle* triangles) const {
-  for_each_slab(layers, run, [&](int k) { make_triangles(march_, k, cases(), triangles); });
-}
-
 void RowMarch::write_vertices(const Run& run, float* positions, float* normals) const {
-  write_vertices({0, layer_count()}, run, positions, normals);
+  for_each_slab({0, layer_count()}, run, [&](int k) { make_vertices(march_, k, frame_, positions, normals); });
 }
 
 void RowMarch::write_half_edges(const Run& run, const HalfEdgeArrays& out) const {

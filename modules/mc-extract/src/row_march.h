@@ -47,15 +47,17 @@ class RowMarch {
   };
   void begin(const ExtractSettings& settings, const Run& run, const BrickIndex* index);
   void classify(Layers layers, const Run& run);
+  void classify_layer(int layer);
   void classify_brick_row(int row, int layer);
   void count_layers(Layers layers, const Run& run, Connectivity connectivity);
   /// Gives the slabs their first numbers: layers in rising order.
   void number(Layers layers);
-  void write_vertices(Layers layers, const Run& run, float* positions, float* normals) const;
-  void write_triangles(Layers layers, const Run& run, Triangle* triangles) const;
+  void write_and_classify(Layers here, Layers behind, Layers ahead, const Run& run, IndexedMesh& mesh);
   [[nodiscard]] const CaseTable& cases() const;
   [[nodiscard]] int layer_count() const;
   [[nodiscard]] int layers_at_once(const Run& run) const;
+  template <class Body>
+  void for_slabs(int layer, const Body& body) const;
   /// body(k) for every slab of the layers, a layer a task.
   template <class Body>
   void for_each_slab(Layers layers, const Run& run, const Body& body) const;
