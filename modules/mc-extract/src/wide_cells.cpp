@@ -15,6 +15,17 @@ namespace isolux::mc {
 namespace HWY_NAMESPACE {
 namespace {
 
+namespace hn = hwy::HWY_NAMESPACE;
+
+/// Numbers of the vertices on a cell's twelve edges, three vectors of four.
+constexpr hn::CappedTag<std::uint32_t, 4> kFour;
+
+/// sum[e] = a[e] + b[e] for the twelve edges: left to itself the compiler adds them one by one.
+HWY_INLINE void add_twelve(const std::uint32_t* a, const std::uint32_t* b, std::uint32_t* sum) {
+  for (std::size_t e = 0; e < 12; e += hn::Lanes(kFour))
+    hn::StoreU(hn::Add(hn::LoadU(kFour, a + e), hn::LoadU(kFour, b + e)), kFour, sum + e);
+}
+
 /// The numbers that run along a row of cells: the next vertex on each of the rows of grid edges around it, and the next
 /// mesh edge on each of its rows of faces and inside.
 struct RowCounters {
@@ -44,7 +55,7 @@ struct RowCounters {
 
   /// Vertex numbers of the cell's twelve edges; those not crossed are meaningless.
   HWY_INLINE void vertices(const CellCase& cell, std::uint32_t (&ids)[12]) const {
-    for (int e = 0; e < 12; ++e) ids[e] = vertex[e] + cell.offset[e];
+    add_twelve(vertex.data(), cell.offset.data(), ids);
   }
   /// First half-edge of the cell's six faces and of its inside.
   HWY_INLINE void half_edges(const CellCase& cell, std::uint32_t (&ids)[8]) const {
@@ -58,7 +69,7 @@ struct RowCounters {
     ids[7] = 0;
   }
   HWY_INLINE void pass_vertices(const CellCase& cell) {
-    for (int e = 0; e < 12; ++e) vertex[e] += cell.step[e];
+    add_twelve(vertex.data(), cell.step.data(), vertex.data());
     triangle += cell.triangles;
   }
   HWY_INLINE void pass_half_edges(const CellCase& cell) {
