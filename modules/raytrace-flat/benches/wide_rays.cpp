@@ -83,7 +83,7 @@ Sites bake_sites(const Volume& volume, std::size_t count) {
 
 void gather_rays(benchmark::State& state, const Case& test, RayQuestion question, int threads) {
   const Volume& volume = volume_of(test);
-  const std::size_t bake = std::min<std::size_t>(volume.lattice().count() / 16, 100000);
+  const std::size_t bake = std::min<std::size_t>(volume.lattice().count() / 16, 262144);
   const Sites sites = bake_sites(volume, bake);
   Run run;
   run.threads = threads;

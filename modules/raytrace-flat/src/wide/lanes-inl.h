@@ -37,7 +37,11 @@ inline constexpr IntTag kI{};
 
 HWY_INLINE Floats lerp(Floats a, Floats b, Floats t) { return hn::MulAdd(t, hn::Sub(b, a), a); }
 HWY_INLINE Mask float_mask(hn::Mask<IntTag> m) { return hn::RebindMask(kF, m); }
-HWY_INLINE Ints floor_to_int(Floats x) { return hn::ConvertTo(kI, hn::Floor(x)); }
+/// Adding 1.5 * 2^23 leaves a whole number below 2^22 in the low bits: cheaper than a conversion that minds overflow.
+HWY_INLINE Ints floor_to_int(Floats x) {
+  const Floats shift = hn::Set(kF, 12582912.0f);
+  return hn::Sub(hn::BitCast(kI, hn::Add(hn::Floor(x), shift)), hn::BitCast(kI, shift));
+}
 
 /// A vector of rays in mirrored coordinates: on axes where a ray runs backwards, position p becomes -p and cell i
 /// becomes ~i, both exactly, so that every ray moves towards higher coordinates.
@@ -160,14 +164,11 @@ HWY_INLINE Exit leave(const Lanes& r, const Ints (&plane)[3]) {
   return exit;
 }
 
-/// Lanes whose (mirrored) cell lies in the volume.
+/// Lanes whose (mirrored) cell lies in the volume, given that it once did: rays run upwards only.
 HWY_INLINE Mask in_box(const Ints (&cell)[3], const Ints (&mirror)[3], const Ints (&last_cell)[3]) {
-  Ints outside = hn::Zero(kI);
-  for (int a = 0; a < 3; ++a) {
-    const Ints x = hn::Xor(cell[a], mirror[a]);
-    outside = hn::Or(outside, hn::Or(x, hn::Sub(last_cell[a], x)));
-  }
-  return float_mask(hn::Gt(outside, hn::Set(kI, -1)));
+  // Mirrored, the last cell is ~0 = -1, all bits set.
+  const auto beyond = [&](int a) { return hn::Gt(cell[a], hn::Or(last_cell[a], mirror[a])); };
+  return float_mask(hn::Not(hn::Or(beyond(0), hn::Or(beyond(1), beyond(2)))));
 }
 
 }  // namespace HWY_NAMESPACE

@@ -10,8 +10,8 @@ namespace isolux::wide {
 namespace {
 
 constexpr std::size_t kBrickCells = 64;
-/// Longer leaps are rare and a level more costs a pass over the bricks.
-constexpr int kMaxDistance = 24;
+/// A leap's code c stands for this many bricks, as kernels compute it: c + 1 + max(0, c - 3).
+constexpr int kLeapOfCode[8] = {1, 2, 3, 4, 6, 8, 10, 12};
 
 Index3 brick_count(Index3 points) { return (points - 1 + (kBrick - 1)) / kBrick; }
 
@@ -56,31 +56,45 @@ std::array<std::uint64_t, 256> make_spread() {
   return table;
 }
 
-/// to |= from, shifted by one bit in both directions along rows of `row` words.
-void widen_rows(const std::vector<std::uint64_t>& from, std::size_t row, std::vector<std::uint64_t>& to) {
-  for (std::size_t begin = 0; begin < from.size(); begin += row) {
-    for (std::size_t w = 0; w < row; ++w) {
-      const std::uint64_t here = from[begin + w];
-      std::uint64_t wide = here | here << 1 | here >> 1;
-      if (w > 0) wide |= from[begin + w - 1] >> 63;
-      if (w + 1 < row) wide |= from[begin + w + 1] << 63;
-      to[begin + w] = wide;
-    }
-  }
-}
+/// A bit a brick, rows of whole words: where a cube of bricks that reaches into one octant meets an occupied one.
+class Obstacles {
+ public:
+  Obstacles(const std::vector<std::uint64_t>& occupied, std::size_t row, std::size_t rows_y, unsigned octant)
+      : bits_(occupied), row_(row), layer_(row * rows_y), octant_(octant) {}
 
-/// to = from, widened by one step of `stride` words in both directions within groups of `group` words.
-void widen_planes(const std::vector<std::uint64_t>& from, std::size_t stride, std::size_t group,
-                  std::vector<std::uint64_t>& to) {
-  for (std::size_t begin = 0; begin < from.size(); begin += group) {
-    for (std::size_t w = begin; w < begin + group; ++w) {
-      std::uint64_t wide = from[w];
-      if (w >= begin + stride) wide |= from[w - stride];
-      if (w + stride < begin + group) wide |= from[w + stride];
-      to[w] = wide;
+  [[nodiscard]] std::span<const std::uint64_t> bits() const { return bits_; }
+
+  /// Makes the cubes a brick larger.
+  void grow() {
+    for (std::size_t begin = 0; begin < bits_.size(); begin += row_) grow_row(bits_.data() + begin);
+    for (std::size_t begin = 0; begin < bits_.size(); begin += layer_)
+      grow_planes(bits_.data() + begin, layer_, row_, (octant_ & 2u) != 0);
+    grow_planes(bits_.data(), bits_.size(), layer_, (octant_ & 4u) != 0);
+  }
+
+ private:
+  void grow_row(std::uint64_t* words) const {
+    if ((octant_ & 1u) != 0) {
+      for (std::size_t w = row_; w-- > 0;) words[w] |= words[w] << 1 | (w > 0 ? words[w - 1] >> 63 : 0);
+    } else {
+      for (std::size_t w = 0; w < row_; ++w) words[w] |= words[w] >> 1 | (w + 1 < row_ ? words[w + 1] << 63 : 0);
     }
   }
-}
+
+  /// In place, each word before its neighbour changes.
+  static void grow_planes(std::uint64_t* words, std::size_t count, std::size_t stride, bool backwards) {
+    if (backwards) {
+      for (std::size_t w = count; w-- > stride;) words[w] |= words[w - stride];
+    } else {
+      for (std::size_t w = 0; w + stride < count; ++w) words[w] |= words[w + stride];
+    }
+  }
+
+  std::vector<std::uint64_t> bits_;
+  std::size_t row_;
+  std::size_t layer_;
+  unsigned octant_;
+};
 
 }  // namespace
 
@@ -109,11 +123,10 @@ CellCodes::CellCodes(const FieldView& field, std::span<const float> thresholds, 
 
 Occupancy::Occupancy(const CellCodes& codes) : bricks_(codes.bricks()) {
   const std::size_t count = codes.codes().size() / kBrickCells;
-  const std::size_t row = (std::size_t(bricks_.x) + 63) / 64;
   words_.resize(2 * count);
-  distance_.resize(count + 8);
-  near_.resize(row * std::size_t(bricks_.y) * std::size_t(bricks_.z));
-  widened_.resize(near_.size());
+  for (auto& octant : leaps_) octant.resize(count + 8);
+  const std::size_t row = (std::size_t(bricks_.x) + 63) / 64;
+  occupied_.resize(row * std::size_t(bricks_.y) * std::size_t(bricks_.z));
 }
 
 void Occupancy::build(const CellCodes& codes, int index, const Run& run) {
@@ -123,51 +136,66 @@ void Occupancy::build(const CellCodes& codes, int index, const Run& run) {
     pack_bits(bytes.subspan(block.begin * kBrickCells, (block.end - block.begin) * kBrickCells), std::uint8_t(index),
               words_.data() + 2 * block.begin);
   });
-  build_distances();
+  find_occupied();
+  parallel_blocks(std::size(leaps_), 1, run, "",
+                  [&](const Block& block) { measure_leaps(unsigned(block.begin), leaps_[block.begin]); });
+  parallel_blocks(words_.size() / 2, kBricksABlock, run, "",
+                  [&](const Block& block) { write_leaps(block.begin, block.end); });
 }
 
-void Occupancy::build_distances() {
-  static const std::array<std::uint64_t, 256> spread = make_spread();
+void Occupancy::find_occupied() {
   const auto nx = std::size_t(bricks_.x);
-  const std::size_t rows = std::size_t(bricks_.y) * std::size_t(bricks_.z);
   const std::size_t row = (nx + 63) / 64;
-  for (std::size_t r = 0; r < rows; ++r) {
+  for (std::size_t r = 0; r < occupied_.size() / row; ++r) {
     for (std::size_t w = 0; w < row; ++w) {
       std::uint64_t bits = 0;
       for (std::size_t i = 64 * w; i < std::min(nx, 64 * w + 64); ++i) {
         const std::uint32_t* word = words_.data() + 2 * (r * nx + i);
         bits |= std::uint64_t((word[0] | word[1]) != 0) << (i & 63);
       }
-      near_[r * row + w] = bits;
+      occupied_[r * row + w] = bits;
     }
   }
-  std::fill(distance_.begin(), distance_.end(), std::uint8_t(0));
-  for (int d = 1; d <= kMaxDistance; ++d) {
-    bool any_far = false;
+}
+
+void Occupancy::measure_leaps(unsigned octant, std::vector<std::uint8_t>& codes) const {
+  static const std::array<std::uint64_t, 256> spread = make_spread();
+  const auto nx = std::size_t(bricks_.x);
+  const std::size_t row = (nx + 63) / 64;
+  const std::size_t rows = occupied_.size() / row;
+  Obstacles obstacles(occupied_, row, std::size_t(bricks_.y), octant);
+  std::fill(codes.begin(), codes.end(), std::uint8_t(0));
+  for (int code = 1; code < 8; ++code) {
+    for (int step = kLeapOfCode[code - 1]; step < kLeapOfCode[code]; ++step) obstacles.grow();
+    bool any_free = false;
     for (std::size_t r = 0; r < rows; ++r) {
-      std::uint8_t* out = distance_.data() + r * nx;
+      std::uint8_t* out = codes.data() + r * nx;
       for (std::size_t i = 0; i < nx; i += 8) {
         // What lies beyond the row's end belongs to the next row.
         const auto valid = std::uint8_t(nx - i >= 8 ? 0xFF : 0xFF >> (8 - (nx - i)));
-        const auto far = std::uint8_t(~(near_[r * row + i / 64] >> (i & 63)) & valid);
-        if (far == 0) continue;
-        any_far = true;
+        const auto free = std::uint8_t(~(obstacles.bits()[r * row + i / 64] >> (i & 63)) & valid);
+        if (free == 0) continue;
+        any_free = true;
         std::uint64_t sum = 0;
         std::memcpy(&sum, out + i, 8);
-        sum += spread[far];  // no byte reaches 256, so nothing is carried
+        sum += spread[free];  // no byte reaches 256, so nothing is carried
         std::memcpy(out + i, &sum, 8);
       }
     }
-    if (!any_far) break;
-    widen_rows(near_, row, widened_);
-    widen_planes(widened_, row, row * std::size_t(bricks_.y), near_);
-    widen_planes(near_, row * std::size_t(bricks_.y), near_.size(), widened_);
-    near_.swap(widened_);
+    if (!any_free) break;
   }
-  for (std::size_t b = 0; b < nx * rows; ++b) {
-    for (std::uint32_t* word : {&words_[2 * b], &words_[2 * b + 1]}) {
-      if (*word != 0) *word |= 1u << 31;
-      if (distance_[b] > 0) *word = distance_[b];
+}
+
+void Occupancy::write_leaps(std::size_t begin, std::size_t end) {
+  for (std::size_t b = begin; b < end; ++b) {
+    std::uint32_t* word = words_.data() + 2 * b;
+    if ((word[0] | word[1]) == 0) {
+      std::uint32_t leaps = kEmptyBrick;
+      for (unsigned octant = 0; octant < 8; ++octant) leaps |= std::uint32_t(leaps_[octant][b]) << (3 * octant);
+      word[0] = word[1] = leaps;
+    } else {
+      for (int half = 0; half < 2; ++half)
+        if ((word[half] & kUpperByte) == kEmptyBrick) word[half] |= 1u << 24;
     }
   }
 }

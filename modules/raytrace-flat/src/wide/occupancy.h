@@ -44,13 +44,14 @@ class Occupancy {
   [[nodiscard]] OccupancyView view() const { return {words_.data(), bricks_}; }
 
  private:
-  void build_distances();
+  void find_occupied();
+  void measure_leaps(unsigned octant, std::vector<std::uint8_t>& codes) const;
+  void write_leaps(std::size_t begin, std::size_t end);
 
   Index3 bricks_{0};
-  std::vector<std::uint32_t> words_;    ///< two a brick
-  std::vector<std::uint8_t> distance_;  ///< one a brick, padded so that four may be read at the last
-  std::vector<std::uint64_t> near_;     ///< a bit a brick, rows of whole words: within the distance reached so far
-  std::vector<std::uint64_t> widened_;  ///< the next distance
+  std::vector<std::uint32_t> words_;     ///< two a brick
+  std::vector<std::uint8_t> leaps_[8];   ///< by octant: one a brick, padded so that eight may be read at the last
+  std::vector<std::uint64_t> occupied_;  ///< a bit a brick, rows of whole words
 };
 
 /// Bit i of out[i / 32] is set where codes[i] > index; `codes` in whole bricks.

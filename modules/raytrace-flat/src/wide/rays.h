@@ -48,10 +48,15 @@ struct FieldView {
   OuterSide outer = OuterSide::kLower;
 };
 
+/// The upper byte of an occupancy's words of empty bricks.
+inline constexpr std::uint32_t kEmptyBrick = 0x5A000000u;
+inline constexpr std::uint32_t kUpperByte = 0xFF000000u;
+
 /// Where the level sets of a range of isovalues may be: two words a brick of 4^3 cells, the halves z < 2 and z >= 2.
-/// Positive: no cell of this brick is occupied, nor of those nearer than so many bricks (chessboard distance). Zero:
-/// none of this half. Negative: bit x + 4 y + 16 z of a cell is set where it is occupied; the sign bit stands for the
-/// last cell, which is taken for occupied.
+/// Both of an empty brick begin with kEmptyBrick; for each octant o of directions (bit a of o: axis a runs backwards),
+/// they have three bits at 3 o: the code c of a cube of c + 1 + max(0, c - 3) empty bricks on a side that begins with
+/// this one and reaches that way (what lies outside of the volume is empty). In other bricks bit x + 4 y + 16 z of a
+/// cell is set where it is occupied; a half whose upper byte would be kEmptyBrick has a cell more for occupied.
 struct OccupancyView {
   const std::uint32_t* words = nullptr;
   Index3 bricks{0};

@@ -43,6 +43,16 @@ HWY_INLINE Lanes start_lanes(const Rays& rays, std::size_t at, const Ints (&last
   return r;
 }
 
+/// Lanes whose (mirrored) cell lies in the volume.
+HWY_INLINE Mask starts_in_box(const Ints (&cell)[3], const Ints (&mirror)[3], const Ints (&last_cell)[3]) {
+  Ints outside = hn::Zero(kI);
+  for (int a = 0; a < 3; ++a) {
+    const Ints x = hn::Xor(cell[a], mirror[a]);
+    outside = hn::Or(outside, hn::Or(x, hn::Sub(last_cell[a], x)));
+  }
+  return float_mask(hn::Gt(outside, hn::Set(kI, -1)));
+}
+
 /// First stage: solves each ray's own cell and queues the rays that leave it. \pre the queue has room for the vectors
 template <Question question>
 void start(const CellReader& cells, Rays& rays, std::size_t begin, std::size_t end, RayQueue& travelling) {
@@ -51,7 +61,7 @@ void start(const CellReader& cells, Rays& rays, std::size_t begin, std::size_t e
   for (std::size_t at = begin; at < end; at += hn::Lanes(kF)) {
     Lanes r = start_lanes(rays, at, cells.last_cell);
     const Mask present = hn::FirstN(kF, end - at);
-    const Mask inside = hn::And(present, in_box(r.cell, r.mirror, cells.last_cell));
+    const Mask inside = hn::And(present, starts_in_box(r.cell, r.mirror, cells.last_cell));
     Ints cell[3];
     Floats place[3];
     Floats direction[3];
@@ -96,48 +106,67 @@ struct Guide {
     for (int a = 0; a < 3; ++a) last_cell[a] = cells.last_cell[a];
   }
 
-  /// What is known of the half brick in which a ray stands, and the bit of its cell there.
+  /// What is known of the half brick in which a ray stands, and where in the brick it stands.
   struct Sight {
     Ints word;
-    Ints bit;
+    Ints cell[3];  ///< not mirrored
   };
 
   [[nodiscard]] HWY_INLINE Sight look(const Lanes& r, Mask moving) const {
-    const auto there = hn::RebindMask(kI, moving);
-    Ints x[3];
-    for (int a = 0; a < 3; ++a) x[a] = hn::IfThenElseZero(there, hn::Xor(r.cell[a], r.mirror[a]));
+    Sight sight;
+    for (int a = 0; a < 3; ++a) sight.cell[a] = hn::Xor(r.cell[a], r.mirror[a]);
+    const auto& x = sight.cell;
     const Ints row = hn::Add(hn::Mul(hn::ShiftRight<2>(x[2]), bricks_xy), hn::Mul(hn::ShiftRight<2>(x[1]), bricks_x));
     const Ints brick = hn::Add(row, hn::ShiftRight<2>(x[0]));
     const Ints half = hn::And(hn::ShiftRight<1>(x[2]), hn::Set(kI, 1));
-    const Ints three = hn::Set(kI, 3);
-    Sight sight;
-    sight.word = hn::GatherIndex(kI, words, hn::Add(hn::Add(brick, brick), half));
-    sight.bit = hn::Or(hn::ShiftLeft<4>(hn::And(x[2], hn::Set(kI, 1))),
-                       hn::Or(hn::ShiftLeft<2>(hn::And(x[1], three)), hn::And(x[0], three)));
+    const Ints at = hn::Add(hn::Add(brick, brick), half);
+    sight.word = hn::GatherIndex(kI, words, hn::IfThenElseZero(hn::RebindMask(kI, moving), at));
     return sight;
   }
 
-  /// Moves the lanes of `moving` to the end of the empty box around them: bricks within the distance, else the eighth
-  /// of a brick, else the cell. Returns the lanes that stand in an occupied cell instead; those that left the volume
+  /// The bits of the cells of a half brick that a ray may still pass.
+  [[nodiscard]] HWY_INLINE Ints ahead(const Lanes& r, const Sight& sight) const {
+    const hn::RebindToUnsigned<IntTag> u;
+    const Ints three = hn::Set(kI, 3);
+    const Ints all = hn::Set(kI, -1);
+    // Forwards the places from k = i on, backwards those that are not from k = i + 1 on.
+    const auto from = [&](int a, Ints shift) {
+      return hn::Xor(hn::BitCast(kI, hn::Shl(hn::BitCast(u, all), hn::BitCast(u, shift))), r.mirror[a]);
+    };
+    const Ints k_x = hn::Sub(hn::And(sight.cell[0], three), r.mirror[0]);
+    const Ints k_y = hn::ShiftLeft<2>(hn::Sub(hn::And(sight.cell[1], three), r.mirror[1]));
+    const Ints x = hn::Mul(hn::And(from(0, k_x), hn::Set(kI, 0xF)), hn::Set(kI, 0x11111111));
+    const Ints rows = from(1, k_y);
+    const Ints y = hn::Or(hn::And(rows, hn::Set(kI, 0xFFFF)), hn::ShiftLeft<16>(rows));
+    const auto in_first_layer = hn::Eq(hn::And(r.cell[2], hn::Set(kI, 1)), hn::Zero(kI));
+    const Ints z = hn::Or(hn::VecFromMask(kI, in_first_layer), hn::Xor(hn::Set(kI, -0x10000), r.mirror[2]));
+    return hn::And(x, hn::And(y, z));
+  }
+
+  /// Moves the lanes of `moving` to the end of the empty box around them: the cube of bricks, else what is left of the
+  /// half brick, else the cell. Returns the lanes that stand in an occupied cell instead; those that left the volume
   /// are taken from `moving` too.
-  [[nodiscard]] HWY_INLINE Mask move(Lanes& r, const Sight& sight, Mask& moving) const {
+  [[nodiscard]] HWY_INLINE Mask move(Lanes& r, Ints octant, const Sight& sight, Mask& moving) const {
     const hn::RebindToUnsigned<IntTag> u;
     const Ints zero = hn::Zero(kI);
     const Ints one = hn::Set(kI, 1);
-    const Ints two = hn::Set(kI, 2);
+    const Ints three = hn::Set(kI, 3);
     const auto bits = hn::BitCast(u, sight.word);
-    const Ints here = hn::BitCast(kI, hn::Shr(bits, hn::BitCast(u, sight.bit)));
-    const auto occupied = hn::And(hn::Lt(sight.word, zero), hn::TestBit(here, one));
-    // The eighth: 2 x 2 x 2 cells whose bits are 0, 1, 4, 5, 16, 17, 20, 21 above its first.
-    const Ints first = hn::And(sight.bit, hn::Set(kI, 0xA));
-    const Ints eighth = hn::And(hn::BitCast(kI, hn::Shr(bits, hn::BitCast(u, first))), hn::Set(kI, 0x00330033));
-    const auto empty_eighth = hn::Eq(eighth, zero);
-    const auto empty_brick = hn::Gt(sight.word, zero);
-    const Ints low_bits = hn::IfThenElse(empty_brick, hn::Set(kI, 3), hn::IfThenElseZero(empty_eighth, one));
-    const Ints reach =
-        hn::IfThenElse(empty_brick, hn::ShiftLeft<2>(sight.word), hn::IfThenElse(empty_eighth, two, one));
-    Ints plane[3];
-    for (int a = 0; a < 3; ++a) plane[a] = hn::Add(hn::AndNot(low_bits, r.cell[a]), reach);
+    const Ints bit = hn::Or(hn::ShiftLeft<4>(hn::And(sight.cell[2], one)),
+                            hn::Or(hn::ShiftLeft<2>(hn::And(sight.cell[1], three)), hn::And(sight.cell[0], three)));
+    const Ints upper = hn::And(sight.word, hn::Set(kI, std::int32_t(kUpperByte)));
+    const auto empty_brick = hn::Eq(upper, hn::Set(kI, std::int32_t(kEmptyBrick)));
+    const auto in_cell = hn::TestBit(hn::BitCast(kI, hn::Shr(bits, hn::BitCast(u, bit))), one);
+    const auto occupied = hn::AndNot(empty_brick, in_cell);
+    const auto empty_rest =
+        hn::Or(hn::Eq(hn::And(sight.word, ahead(r, sight)), zero), empty_brick);
+    const Ints code = hn::And(hn::BitCast(kI, hn::Shr(bits, hn::BitCast(u, octant))), hn::Set(kI, 7));
+    const Ints cube = hn::Add(code, hn::Max(hn::Sub(code, three), zero));
+    const Ints rest = hn::IfThenElseZero(empty_rest, three);
+    const Ints rest_z = hn::IfThenElse(empty_brick, three, hn::IfThenElseZero(empty_rest, one));
+    const Ints more = hn::Add(one, hn::IfThenElseZero(empty_brick, hn::ShiftLeft<2>(cube)));
+    const Ints plane[3] = {hn::Add(hn::Or(r.cell[0], rest), more), hn::Add(hn::Or(r.cell[1], rest), more),
+                           hn::Add(hn::Or(r.cell[2], rest_z), more)};
     const Exit exit = leave(r, plane);
     const Mask stopped = hn::And(moving, float_mask(occupied));
     moving = hn::AndNot(stopped, moving);
@@ -148,6 +177,12 @@ struct Guide {
     return stopped;
   }
 };
+
+/// Where the leaps of a ray's octant are kept in a word.
+HWY_INLINE Ints octant_shift(const Lanes& r) {
+  return hn::Add(hn::And(r.mirror[0], hn::Set(kI, 3)),
+                hn::Add(hn::And(r.mirror[1], hn::Set(kI, 6)), hn::And(r.mirror[2], hn::Set(kI, 12))));
+}
 
 /// Second stage, one pass over the queue: a few steps for each pair of vectors of rays, without branches; rays that
 /// reach an occupied cell go to `waiting`, those that leave the volume are done, the rest is packed again.
@@ -161,9 +196,11 @@ void travel(const Guide& guide, RayQueue& travelling, RayQueue& waiting, TraceCo
     Lanes r[kVectors];
     Mask moving[kVectors];
     Mask stopped[kVectors];
+    Ints octant[kVectors];
     ISOLUX_UNROLL
     for (std::size_t v = 0; v < kVectors; ++v) {
       r[v] = load_lanes(travelling, at + v * lanes);
+      octant[v] = octant_shift(r[v]);
       moving[v] = hn::FirstN(kF, count - HWY_MIN(count, at + v * lanes));
       stopped[v] = hn::FirstN(kF, 0);
     }
@@ -175,7 +212,7 @@ void travel(const Guide& guide, RayQueue& travelling, RayQueue& waiting, TraceCo
       ISOLUX_UNROLL
       for (std::size_t v = 0; v < kVectors; ++v) {
         counters.macrocells += hn::CountTrue(kF, moving[v]);
-        stopped[v] = hn::Or(stopped[v], guide.move(r[v], sight[v], moving[v]));
+        stopped[v] = hn::Or(stopped[v], guide.move(r[v], octant[v], sight[v], moving[v]));
         // Whoever has leapt over an empty cell has left its level set.
         if (step == 0) mark(r[v], hn::And(stopped[v], still_on_it(r[v])));
       }
