@@ -158,8 +158,7 @@ struct Guide {
     const auto empty_brick = hn::Eq(upper, hn::Set(kI, std::int32_t(kEmptyBrick)));
     const auto in_cell = hn::TestBit(hn::BitCast(kI, hn::Shr(bits, hn::BitCast(u, bit))), one);
     const auto occupied = hn::AndNot(empty_brick, in_cell);
-    const auto empty_rest =
-        hn::Or(hn::Eq(hn::And(sight.word, ahead(r, sight)), zero), empty_brick);
+    const auto empty_rest = hn::Or(hn::Eq(hn::And(sight.word, ahead(r, sight)), zero), empty_brick);
     const Ints code = hn::And(hn::BitCast(kI, hn::Shr(bits, hn::BitCast(u, octant))), hn::Set(kI, 7));
     const Ints cube = hn::Add(code, hn::Max(hn::Sub(code, three), zero));
     const Ints rest = hn::IfThenElseZero(empty_rest, three);
@@ -181,7 +180,31 @@ struct Guide {
 /// Where the leaps of a ray's octant are kept in a word.
 HWY_INLINE Ints octant_shift(const Lanes& r) {
   return hn::Add(hn::And(r.mirror[0], hn::Set(kI, 3)),
-                hn::Add(hn::And(r.mirror[1], hn::Set(kI, 6)), hn::And(r.mirror[2], hn::Set(kI, 12))));
+                 hn::Add(hn::And(r.mirror[1], hn::Set(kI, 6)), hn::And(r.mirror[2], hn::Set(kI, 12))));
+}
+
+/// Hands on a vector of rays that have travelled: lanes of `stopped` to `waiting`, those of `moving` back to their own
+/// queue. What has not changed goes from memory to memory. Only lanes of `fresh` may still lie on their level set:
+/// whoever has leapt over an empty cell has left it. \pre the queue's end is not beyond `at`
+HWY_INLINE void sort_lanes(RayQueue& travelling, std::size_t at, const Lanes& r, Mask stopped, Mask fresh, Mask moving,
+                           RayQueue& waiting) {
+  const Packing to_waiting(stopped);
+  const Packing to_travelling(moving);
+  const std::size_t end = travelling.count;
+  const std::size_t wait = waiting.count;
+  const auto hand_on = [&](std::size_t field, Floats v) HWY_ATTR {
+    to_waiting.store(v, waiting.field[field] + wait);
+    to_travelling.store(v, travelling.field[field] + end);
+  };
+  const auto unchanged = [&](std::size_t field) HWY_ATTR { return hn::LoadU(kF, travelling.field[field] + at); };
+  for (std::size_t field = 0; field < 6; ++field) hand_on(field, unchanged(field));
+  for (std::size_t a = 0; a < 3; ++a) hand_on(6 + a, hn::BitCast(kF, r.cell[a]));
+  hand_on(9, r.t);
+  hand_on(10, unchanged(10));
+  const Ints id = hn::BitCast(kI, unchanged(11));
+  hand_on(11, hn::BitCast(kF, hn::IfThenElse(hn::RebindMask(kI, fresh), id, number_of(id))));
+  waiting.count += to_waiting.count();
+  travelling.count += to_travelling.count();
 }
 
 /// Second stage, one pass over the queue: a few steps for each pair of vectors of rays, without branches; rays that
@@ -196,6 +219,7 @@ void travel(const Guide& guide, RayQueue& travelling, RayQueue& waiting, TraceCo
     Lanes r[kVectors];
     Mask moving[kVectors];
     Mask stopped[kVectors];
+    Mask fresh[kVectors];
     Ints octant[kVectors];
     ISOLUX_UNROLL
     for (std::size_t v = 0; v < kVectors; ++v) {
@@ -213,15 +237,12 @@ void travel(const Guide& guide, RayQueue& travelling, RayQueue& waiting, TraceCo
       for (std::size_t v = 0; v < kVectors; ++v) {
         counters.macrocells += hn::CountTrue(kF, moving[v]);
         stopped[v] = hn::Or(stopped[v], guide.move(r[v], octant[v], sight[v], moving[v]));
-        // Whoever has leapt over an empty cell has left its level set.
-        if (step == 0) mark(r[v], hn::And(stopped[v], still_on_it(r[v])));
+        if (step == 0) fresh[v] = stopped[v];
       }
     }
     ISOLUX_UNROLL
-    for (std::size_t v = 0; v < kVectors; ++v) {
-      append_lanes(waiting, r[v], stopped[v]);
-      append_lanes(travelling, r[v], moving[v]);
-    }
+    for (std::size_t v = 0; v < kVectors; ++v)
+      sort_lanes(travelling, at + v * lanes, r[v], stopped[v], fresh[v], moving[v], waiting);
   }
 }
 
@@ -247,6 +268,16 @@ HWY_INLINE void append_roots(RootQueue& roots, const Cubic& cubic, Floats high, 
   packing.store(t_leave, roots.t_leave + at);
   packing.store(hn::BitCast(kF, number_of(id)), roots.id + at);
   roots.count += packing.count();
+}
+
+/// The answer to whether there is a hit.
+HWY_INLINE void answer(Mask hit, Ints id, Rays& rays) {
+  alignas(64) std::int32_t number[hn::MaxLanes(kI)];
+  hn::Store(number_of(id), kI, number);
+  std::uint8_t bytes[8] = {};
+  hn::StoreMaskBits(kF, hit, bytes);
+  for (unsigned bits = bytes[0] | unsigned(bytes[1]) << 8; bits != 0; bits &= bits - 1)
+    rays.t[std::size_t(number[std::countr_zero(bits)])] = 0.0f;
 }
 
 /// Asks for the corner values of the vector of cells at `at` ahead of their use.
@@ -328,15 +359,15 @@ void test(const CellReader& cells, RayQueue& waiting, RayQueue& travelling, Root
     Floats t_enter = r.t;
     const Mask fresh = hn::And(present, still_on_it(r));
     if (!hn::AllFalse(kF, fresh)) restart(fresh, cubic, exit.t, r, hit, high, t_enter);
-    append_roots(roots, cubic, high, r.id, t_enter, exit.t, hit);
+    if (question == Question::kAnyHit) {
+      answer(hit, r.id, rays);
+    } else {
+      append_roots(roots, cubic, high, r.id, t_enter, exit.t, hit);
+    }
     for (int a = 0; a < 3; ++a) r.cell[a] = exit.cell[a];
     r.t = exit.t;
     const Mask on = hn::AndNot(hit, present);
     append_lanes(travelling, r, hn::And(on, in_box(r.cell, r.mirror, cells.last_cell)));
-    if (question == Question::kAnyHit) {
-      for (std::size_t i = 0; i < roots.count; ++i) rays.t[roots.ray(i)] = 0.0f;
-      roots.count = 0;
-    }
   }
   waiting.count = 0;
 }
