@@ -49,11 +49,12 @@ struct RayMarch::Part {
   double length;  ///< in t
 };
 
-RayMarch::RayMarch(const Volume& volume)
-    : lattice_(volume.lattice()),
-      data_(volume.values.values().data()),
-      macrocells_(volume),
+RayMarch::RayMarch(GridView<const float> values)
+    : lattice_(values.lattice()),
+      data_(values.values().data()),
       rounding_(0x1p-51 * std::max({lattice_.size.x, lattice_.size.y, lattice_.size.z})) {}
+
+RayMarch::RayMarch(const Volume& volume) : RayMarch(volume.values.view()) { macrocells_.emplace(volume); }
 
 bool RayMarch::make_ray(const Vec3& origin, const Vec3& direction, double limit, Ray& ray) const {
   const double largest = std::max({std::fabs(direction.x), std::fabs(direction.y), std::fabs(direction.z)});
@@ -92,10 +93,11 @@ std::array<double, 3> RayMarch::start_in_cell(const Ray& ray) const {
 // Bricks of 4^3 cells are asked first: their table is small enough to stay in a near cache. Only then is it worth
 // looking at their eighths, or at the larger bricks around them.
 int RayMarch::free_brick(Ray& ray, TraceCounters& counters) const {
+  if (!macrocells_) return 0;
   const auto out_of_reach = [&ray](const Macrocells::Level& level, std::size_t b) {
     return ray.inner > 0.0 ? double(level.high[b]) < ray.level : double(level.low[b]) > ray.level;
   };
-  const auto& [eighths, bricks, blocks] = macrocells_.levels();
+  const auto& [eighths, bricks, blocks] = macrocells_->levels();
   const std::size_t brick = bricks.offset(ray.cell);
   if (brick != ray.brick) {
     if (out_of_reach(bricks, brick)) return out_of_reach(blocks, blocks.offset(ray.cell)) ? blocks.shift : bricks.shift;
@@ -218,14 +220,10 @@ std::optional<LevelSetHit> RayMarch::march(Ray& ray, RootWish wish, TraceCounter
   return std::nullopt;
 }
 
-std::optional<LevelSetHit> RayMarch::next_hit(const Vec3& origin, const Vec3& direction, double isovalue,
-                                              OuterSide outer, RootWish wish, double limit,
-                                              TraceCounters& counters) const {
-  ++counters.rays;
-  Ray ray;
-  if (!make_ray(origin, direction, limit, ray)) return std::nullopt;
+bool RayMarch::start_on_level(const Vec3& origin, const Vec3& direction, double isovalue, OuterSide outer, double limit,
+                              Ray& ray) const {
+  if (!make_ray(origin, direction, limit, ray)) return false;
   ray.inner = outer == OuterSide::kLower ? 1.0 : -1.0;
-  ray.fresh = true;
   // A site's isovalue is a float: the ray follows the level set that its start lies on exactly. Where the start is on
   // {f = isovalue} as well as double precision can tell, it follows that one, so that corners and plateaus of just this
   // value are met as such.
@@ -235,7 +233,35 @@ std::optional<LevelSetHit> RayMarch::next_hit(const Vec3& origin, const Vec3& di
   for (const double v : corners) largest = std::max(largest, std::fabs(v));
   const double start = cell_value(corners, start_in_cell(ray));
   ray.level = std::fabs(start - isovalue) <= 0x1p-46 * largest ? isovalue : start;
+  return true;
+}
+
+std::optional<LevelSetHit> RayMarch::next_hit(const Vec3& origin, const Vec3& direction, double isovalue,
+                                              OuterSide outer, RootWish wish, double limit,
+                                              TraceCounters& counters) const {
+  ++counters.rays;
+  Ray ray;
+  if (!start_on_level(origin, direction, isovalue, outer, limit, ray)) return std::nullopt;
+  ray.fresh = true;
   return march(ray, wish, counters);
+}
+
+std::optional<LevelSetHit> RayMarch::hit_in_cell(const Vec3& origin, const Vec3& direction, double isovalue,
+                                                 OuterSide outer, double t, TraceCounters& counters) const {
+  Ray ray;
+  if (!start_on_level(origin, direction, isovalue, outer, kInfinity, ray)) return std::nullopt;
+  double entry[3];
+  for (int a = 0; a < 3; ++a) {
+    const double x = ray.origin[a] + t * ray.scale * ray.direction[a];
+    ray.cell[a] = std::clamp(int(x), 0, lattice_.size[a] - 2);
+    entry[a] = ray.direction[a] == 0.0 ? 0.0 : (ray.cell[a] + 1 - ray.forward[a] - ray.origin[a]) * ray.inverse[a];
+    ray.t = std::max(ray.t, entry[a]);
+  }
+  if (ray.t == 0.0) return std::nullopt;
+  for (int a = 0; a < 3; ++a) ray.on_plane[a] = entry[a] == ray.t;
+  Step step;
+  plan(ray, step, counters);
+  return visit_cell(ray, step, RootWish::kPlace, counters);
 }
 
 std::optional<LevelSetHit> RayMarch::first_hit(const Vec3& origin, const Vec3& direction, double isovalue,

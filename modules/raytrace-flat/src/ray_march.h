@@ -1,6 +1,7 @@
 #pragma once
 
 #include <isolux/core/field.h>
+#include <isolux/core/grid.h>
 #include <isolux/raytrace_flat/flat_tracer.h>
 #include <isolux/raytrace_flat/level_set_intersector.h>
 
@@ -18,11 +19,16 @@ namespace isolux {
 class RayMarch {
  public:
   explicit RayMarch(const Volume& volume);
+  /// Without macrocells: nothing is built, and a ray looks into every cell on its way. The values must outlive it.
+  explicit RayMarch(GridView<const float> values);
 
   /// \param limit hits beyond this t do not count
   [[nodiscard]] std::optional<LevelSetHit> next_hit(const Vec3& origin, const Vec3& direction, double isovalue,
                                                     OuterSide outer, RootWish wish, double limit,
                                                     TraceCounters& counters) const;
+  /// The hit of next_hit, known to lie in the cell that the ray is in at t > 0; none if it is not there. Cheaper.
+  [[nodiscard]] std::optional<LevelSetHit> hit_in_cell(const Vec3& origin, const Vec3& direction, double isovalue,
+                                                       OuterSide outer, double t, TraceCounters& counters) const;
   [[nodiscard]] std::optional<LevelSetHit> first_hit(const Vec3& origin, const Vec3& direction, double isovalue,
                                                      TraceCounters& counters) const;
 
@@ -31,6 +37,8 @@ class RayMarch {
   struct Step;
   struct Part;
   [[nodiscard]] bool make_ray(const Vec3& origin, const Vec3& direction, double limit, Ray& ray) const;
+  [[nodiscard]] bool start_on_level(const Vec3& origin, const Vec3& direction, double isovalue, OuterSide outer,
+                                    double limit, Ray& ray) const;
   [[nodiscard]] std::optional<LevelSetHit> march(Ray& ray, RootWish wish, TraceCounters& counters) const;
   /// The shift of the largest brick about the ray's cell that cannot hold the level set, 0 if there is none.
   [[nodiscard]] int free_brick(Ray& ray, TraceCounters& counters) const;
@@ -45,7 +53,7 @@ class RayMarch {
 
   Lattice lattice_;
   const float* data_;
-  Macrocells macrocells_;
+  std::optional<Macrocells> macrocells_;
   double rounding_;  ///< what a coordinate in the box can be wrong by
 };
 

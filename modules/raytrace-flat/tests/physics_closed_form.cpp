@@ -73,9 +73,10 @@ TEST_P(ClosedForm, WhiteFurnace) {
                                  random_positions(300, 5,
                                                   [&](const Vec3& p) {
                                                     const Vec3 index = volume.lattice().frame.index(p);
-                                                    return std::abs(TrilinearField(volume).value(index)) < 1.3;
+                                                    return std::abs(TrilinearField(volume).value(index)) < 1.2;
                                                   }),
                                  outer);
+    // Nearer to the extremes the pockets' necks are so narrow that some paths do not find out in 1000 reflections.
     const TraceResult result = trace(volume, furnace(1.0f, outer), sites, 32, kAllBounces);
     // Sums of ones, in floats at the end.
     EXPECT_LT(error_of(result.samples, [](std::size_t) { return 1.0; }).worst, 1e-6);

@@ -1,5 +1,3 @@
-#include <fmt/format.h>
-#include <isolux/core/error.h>
 #include <isolux/core/parallel.h>
 #include <isolux/raytrace_flat/flat_tracer.h>
 
@@ -11,6 +9,7 @@
 
 #include "path_tracer.h"
 #include "trace_counters.h"
+#include "trace_request.h"
 
 namespace isolux {
 namespace {
@@ -53,29 +52,10 @@ double variance_of_mean(std::vector<PathValue>& paths, int channels) {
   return sum / (2.0 * (n - 1.0) * n * channels);
 }
 
-void require_usable(const Sites& sites, const TraceSettings& settings) {
-  if (sites.isovalues.size() != sites.size() || sites.normals.size() != sites.size()) {
-    throw InvalidInput(fmt::format("{} site positions with {} isovalues and {} normals; there must be one of each",
-                                   sites.size(), sites.isovalues.size(), sites.normals.size()));
-  }
-  if (settings.rays < 1) throw InvalidInput(fmt::format("rays = {}: allowed is 1 and more", settings.rays));
-  if (settings.bounces < kAllBounces)
-    throw InvalidInput(fmt::format("bounces = {}: allowed is -1 (all), 0 and more", settings.bounces));
-}
-
 /// Path tracing in double precision, one ray at a time: the oracle of the faster backends.
 class ScalarTracer final : public FlatTracer {
  public:
-  struct Options {
-    PathLimits limits;
-
-    void describe(OptionVisitor& option) {
-      option("roulette_depth", limits.roulette_depth,
-             {.min = 0, .max = 1e6, .help = "reflections before Russian roulette may end a path"});
-      option("longest_path", limits.longest_path,
-             {.min = 0, .max = 1e6, .help = "reflections at most, for closed pockets of albedo 1"});
-    }
-  };
+  using Options = PathOptions;
 
   explicit ScalarTracer(const Options& options) : options_(options) {}
 

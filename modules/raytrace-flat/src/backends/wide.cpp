@@ -1,5 +1,3 @@
-#include <fmt/format.h>
-#include <isolux/core/error.h>
 #include <isolux/raytrace_flat/flat_tracer.h>
 
 #include <mutex>
@@ -7,6 +5,7 @@
 #include <vector>
 
 #include "trace_counters.h"
+#include "trace_request.h"
 #include "wide/net_mean.h"
 #include "wide/path_waves.h"
 #include "wide/site_blocks.h"
@@ -17,16 +16,7 @@ namespace {
 /// Path tracing with many rays at once in the machine's widest vectors, sites sorted by isovalue and place.
 class WideTracer final : public FlatTracer {
  public:
-  struct Options {
-    PathLimits limits;
-
-    void describe(OptionVisitor& option) {
-      option("roulette_depth", limits.roulette_depth,
-             {.min = 0, .max = 1e6, .help = "reflections before Russian roulette may end a path"});
-      option("longest_path", limits.longest_path,
-             {.min = 0, .max = 1e6, .help = "reflections at most, for closed pockets of albedo 1"});
-    }
-  };
+  using Options = PathOptions;
 
   explicit WideTracer(const Options& options) : options_(options) {}
 
@@ -66,16 +56,6 @@ class WideTracer final : public FlatTracer {
       const std::scoped_lock lock(adding);
       add(counters, part);
     });
-  }
-
-  static void require_usable(const Sites& sites, const TraceSettings& settings) {
-    if (sites.isovalues.size() != sites.size() || sites.normals.size() != sites.size()) {
-      throw InvalidInput(fmt::format("{} site positions with {} isovalues and {} normals; there must be one of each",
-                                     sites.size(), sites.isovalues.size(), sites.normals.size()));
-    }
-    if (settings.rays < 1) throw InvalidInput(fmt::format("rays = {}: allowed is 1 and more", settings.rays));
-    if (settings.bounces < kAllBounces)
-      throw InvalidInput(fmt::format("bounces = {}: allowed is -1 (all), 0 and more", settings.bounces));
   }
 
   Options options_;

@@ -69,6 +69,16 @@ struct CellReader {
   }
 };
 
+/// The field less the isovalue at a place in the cell.
+HWY_INLINE Floats value(const Corners& c, const Floats (&at)[3]) {
+  Floats z[2];
+  for (int q = 0; q < 2; ++q) {
+    const Floats* v = c.v + 4 * q;
+    z[q] = lerp(lerp(v[0], v[1], at[0]), lerp(v[2], v[3], at[0]), at[1]);
+  }
+  return lerp(z[0], z[1], at[2]);
+}
+
 /// A cubic on [0, 1] in Bernstein form: if no coefficient reaches zero, neither does the cubic.
 struct Cubic {
   Floats b[4];
@@ -103,13 +113,19 @@ HWY_INLINE Floats value(const Cubic& c, Floats s) {
   return lerp(lerp(p, q, s), lerp(q, r, s), s);
 }
 
+HWY_INLINE Floats slope(const Cubic& c, Floats s) {
+  const Floats d[3] = {hn::Sub(c.b[1], c.b[0]), hn::Sub(c.b[2], c.b[1]), hn::Sub(c.b[3], c.b[2])};
+  return hn::Mul(hn::Set(kF, 3.0f), lerp(lerp(d[0], d[1], s), lerp(d[1], d[2], s), s));
+}
+
 /// Lanes whose cubic, negative at 0, reaches zero in [0, 1]; `high` gets an end of a bracket of the first root: the
-/// interior maximum if that reaches zero, else 1.
-HWY_INLINE Mask reaches_zero(const Cubic& c, Floats& high) {
+/// interior maximum if that reaches zero, else 1. `doubtful` gets the lanes that `rounding` could decide otherwise.
+HWY_INLINE Mask reaches_zero(const Cubic& c, Floats rounding, Floats& high, Mask& doubtful) {
   const Floats zero = hn::Zero(kF);
   const Floats one = hn::Set(kF, 1.0f);
   high = one;
   const Mask at_end = hn::Ge(c.b[3], zero);
+  doubtful = hn::Le(hn::Abs(c.b[3]), rounding);
   const Mask may = hn::Or(hn::Ge(c.b[1], zero), hn::Ge(c.b[2], zero));
   if (hn::AllFalse(kF, may)) return at_end;
   // The derivative A s^2 + B s + C has its falling root at the maximum; each form is stable for one sign of B.
@@ -127,7 +143,9 @@ HWY_INLINE Mask reaches_zero(const Cubic& c, Floats& high) {
   const Floats s = hn::Div(numerator, denominator);
   const Mask inside = hn::And(hn::Gt(s, zero), hn::Lt(s, one));
   const Mask peak = hn::And(hn::And(may, inside), hn::Gt(discriminant, zero));
-  const Mask over = hn::And(peak, hn::Ge(value(c, s), zero));
+  const Floats top = value(c, s);
+  const Mask over = hn::And(peak, hn::Ge(top, zero));
+  doubtful = hn::Or(doubtful, hn::And(peak, hn::Le(hn::Abs(top), rounding)));
   high = hn::IfThenElse(over, s, one);
   return hn::Or(at_end, over);
 }
@@ -136,7 +154,6 @@ HWY_INLINE Mask reaches_zero(const Cubic& c, Floats& high) {
 /// shrinking bracket.
 HWY_INLINE Floats bracketed_root(const Cubic& c, Floats high) {
   constexpr int kSteps = 7;
-  const Floats d[3] = {hn::Sub(c.b[1], c.b[0]), hn::Sub(c.b[2], c.b[1]), hn::Sub(c.b[3], c.b[2])};
   Floats low = hn::Zero(kF);
   const Floats zero = low;
   Floats s = hn::Mul(high, hn::Div(c.b[0], hn::Sub(c.b[0], value(c, high))));
@@ -145,8 +162,7 @@ HWY_INLINE Floats bracketed_root(const Cubic& c, Floats high) {
     const Mask before = hn::Lt(f, zero);
     low = hn::IfThenElse(before, s, low);
     high = hn::IfThenElse(before, high, s);
-    const Floats slope = hn::Mul(hn::Set(kF, 3.0f), lerp(lerp(d[0], d[1], s), lerp(d[1], d[2], s), s));
-    const Floats newton = hn::Sub(s, hn::Div(f, slope));
+    const Floats newton = hn::Sub(s, hn::Div(f, slope(c, s)));
     const Mask kept = hn::And(hn::Ge(newton, low), hn::Le(newton, high));
     s = hn::IfThenElse(kept, newton, hn::Mul(hn::Set(kF, 0.5f), hn::Add(low, high)));
   }
@@ -185,12 +201,6 @@ HWY_INLINE Mask goes_inwards(const Deflated& p) {
   return hn::Or(hn::Gt(p.c[0], zero), hn::And(hn::Eq(p.c[0], zero), curves));
 }
 
-/// Lanes whose deflated polynomial is zero: the ray stays on its level set as far as the cell goes.
-HWY_INLINE Mask is_flat(const Deflated& p) {
-  const Floats zero = hn::Zero(kF);
-  return hn::And(hn::Eq(p.c[0], zero), hn::And(hn::Eq(p.c[1], zero), hn::Eq(p.c[2], zero)));
-}
-
 /// Lanes whose deflated polynomial, not positive just beyond 0, has a root in (0, t_end]; `root` gets the first.
 HWY_INLINE Mask next_root(const Deflated& p, Floats t_end, Floats& root) {
   const Floats zero = hn::Zero(kF);
@@ -208,9 +218,40 @@ HWY_INLINE Mask next_root(const Deflated& p, Floats t_end, Floats& root) {
 
 /// The same polynomial for a start at the cubic's beginning, over its own parameter.
 HWY_INLINE Deflated deflated(const Cubic& c) {
-  const Floats first = hn::Mul(hn::Set(kF, 3.0f), hn::Sub(c.b[1], c.b[0]));
-  const Floats twice_middle = hn::Mul(hn::Set(kF, 3.0f), c.b[2]);
-  return {{first, hn::Sub(twice_middle, hn::Add(first, first)), hn::Add(hn::Sub(first, twice_middle), c.b[3])}};
+  const Floats three = hn::Set(kF, 3.0f);
+  const Floats first = hn::Mul(three, hn::Sub(c.b[1], c.b[0]));
+  const Floats twice_middle = hn::Mul(three, hn::Sub(c.b[2], c.b[0]));
+  const Floats last = hn::Sub(c.b[3], c.b[0]);
+  return {{first, hn::Sub(twice_middle, hn::Add(first, first)), hn::Add(hn::Sub(first, twice_middle), last)}};
+}
+
+/// How far the kernels may be wrong about the field in a cell that a ray leaves at t: a rounding or two of its values,
+/// of the isovalue, and of the ray's place times the field's slope.
+HWY_INLINE Floats rounding(const Corners& k, Floats isovalue, Floats t) {
+  Floats largest = hn::Abs(k.v[0]);
+  for (int q = 1; q < 8; ++q) largest = hn::Max(largest, hn::Abs(k.v[q]));
+  return hn::Mul(hn::Set(kF, 0x1p-23f), hn::MulAdd(t, largest, hn::Max(largest, hn::Abs(isovalue))));
+}
+
+/// Lanes of rays that nowhere up to t get off their level set by more than a rounding: the next cell is then the first.
+HWY_INLINE Mask stays_on_it(const Deflated& p, Floats t, Floats rounding) {
+  const Floats bound = hn::MulAdd(t, hn::MulAdd(t, hn::Abs(p.c[2]), hn::Abs(p.c[1])), hn::Abs(p.c[0]));
+  return hn::Le(hn::Mul(t, bound), rounding);
+}
+
+/// The slope of the field along the ray at a root of the deflated polynomial.
+HWY_INLINE Floats slope_at_root(const Deflated& p, Floats root) {
+  return hn::Mul(root, hn::MulAdd(hn::Add(root, root), p.c[2], p.c[1]));
+}
+
+/// Lanes in which `rounding` could decide otherwise whether a ray is blocked at its start or meets its level set again
+/// within t: it starts along the level set, passes through it at t, or touches it.
+HWY_INLINE Mask is_doubtful(const Deflated& p, Floats t, Floats rounding) {
+  const Floats discriminant = hn::NegMulAdd(hn::Mul(hn::Set(kF, 4.0f), p.c[0]), p.c[2], hn::Mul(p.c[1], p.c[1]));
+  const Floats end = hn::Mul(t, hn::MulAdd(t, hn::MulAdd(t, p.c[2], p.c[1]), p.c[0]));
+  const Mask touches = hn::Le(hn::Abs(discriminant), hn::Mul(hn::Abs(p.c[2]), rounding));
+  const Mask at_edge = hn::Or(hn::Le(hn::Abs(p.c[0]), rounding), hn::Le(hn::Abs(end), rounding));
+  return hn::AndNot(stays_on_it(p, t, hn::Zero(kF)), hn::Or(touches, at_edge));
 }
 
 }  // namespace HWY_NAMESPACE

@@ -24,6 +24,8 @@ struct Rays {
   std::vector<float> origin[3];
   std::vector<float> direction[3];  ///< any length
   std::vector<float> isovalue;
+  std::vector<std::uint32_t> doubtful;  ///< rays that single precision cannot answer
+  std::vector<std::uint32_t> vague;     ///< hits whose place it cannot tell well; their t is in the cell of the hit
   std::vector<float> t;  ///< answer, in lengths of the direction: 0 if blocked at the start, kEscaped if nothing is met
 
   explicit Rays(std::size_t capacity) {
@@ -60,6 +62,7 @@ inline constexpr std::uint32_t kUpperByte = 0xFF000000u;
 struct OccupancyView {
   const std::uint32_t* words = nullptr;
   Index3 bricks{0};
+  float threshold = -std::numeric_limits<float>::infinity();  ///< holds from this isovalue on towards the inner side
 };
 
 /// Answers every ray of the batch. The occupancy must have every cell's bit set that a level set of one of the rays

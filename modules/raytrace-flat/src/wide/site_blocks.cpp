@@ -134,7 +134,9 @@ void for_each_block(const Volume& volume, const Sites& sites, const BlockRequest
       parallel_blocks(end - begin, request.sites_per_block, part, stage, [&](const Block& block) {
         std::vector<std::uint32_t> numbers;
         for (std::size_t i = block.begin; i < block.end; ++i) numbers.push_back(entries[begin + i].site);
-        body({numbers, field, occupancy.view(), signed_isovalue(thresholds[bucket], request.outer)});
+        OccupancyView view = occupancy.view();
+        view.threshold = signed_isovalue(thresholds[bucket], request.outer);
+        body({numbers, field, view});
       });
       done += end - begin;
       begin = end;

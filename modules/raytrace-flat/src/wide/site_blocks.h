@@ -18,12 +18,12 @@ struct SiteBlock {
   std::span<const std::uint32_t> sites;  ///< numbers into the Sites
   FieldView field;
   OccupancyView occupancy;
-  float threshold = 0.0f;  ///< the occupancy holds for isovalues from here on towards the inner side
 
   /// The isovalue nearest to `wanted` for which the occupancy holds: positions found by tracing are rounded, and so is
   /// their isovalue, which may drift past the threshold by as much.
   [[nodiscard]] float admitted(float wanted) const {
-    return field.outer == OuterSide::kLower ? std::max(wanted, threshold) : std::min(wanted, threshold);
+    return field.outer == OuterSide::kLower ? std::max(wanted, occupancy.threshold)
+                                            : std::min(wanted, occupancy.threshold);
   }
 };
 

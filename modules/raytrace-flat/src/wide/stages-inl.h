@@ -19,6 +19,9 @@ namespace HWY_NAMESPACE {
 /// Components below this are taken for this: their planes are then beyond every box, and 1/d stays finite.
 inline constexpr float kSmallestDirection = 1e-12f;
 
+/// Roots that rounding may shift by more are asked of double precision: in voxels, some of what is promised.
+inline constexpr float kAccuracy = 4e-5f;
+
 /// Takes the batch's rays [at, at + lanes) into mirrored coordinates. A ray that starts exactly on a face between cells
 /// stands in the cell that it runs into, so that no first interval is empty.
 HWY_INLINE Lanes start_lanes(const Rays& rays, std::size_t at, const Ints (&last_cell)[3]) {
@@ -43,6 +46,21 @@ HWY_INLINE Lanes start_lanes(const Rays& rays, std::size_t at, const Ints (&last
   return r;
 }
 
+/// Calls body with the number of each lane's ray.
+template <class Body>
+HWY_INLINE void for_each_ray(Mask mask, Ints id, const Body& body) {
+  alignas(64) std::int32_t number[hn::MaxLanes(kI)];
+  hn::Store(number_of(id), kI, number);
+  std::uint8_t bytes[8] = {};
+  hn::StoreMaskBits(kF, mask, bytes);
+  for (unsigned bits = bytes[0] | unsigned(bytes[1]) << 8; bits != 0; bits &= bits - 1)
+    body(std::size_t(number[std::countr_zero(bits)]));
+}
+
+HWY_INLINE void doubt(Mask mask, Ints id, Rays& rays) {
+  for_each_ray(mask, id, [&](std::size_t ray) { rays.doubtful.push_back(std::uint32_t(ray)); });
+}
+
 /// Lanes whose (mirrored) cell lies in the volume.
 HWY_INLINE Mask starts_in_box(const Ints (&cell)[3], const Ints (&mirror)[3], const Ints (&last_cell)[3]) {
   Ints outside = hn::Zero(kI);
@@ -55,7 +73,8 @@ HWY_INLINE Mask starts_in_box(const Ints (&cell)[3], const Ints (&mirror)[3], co
 
 /// First stage: solves each ray's own cell and queues the rays that leave it. \pre the queue has room for the vectors
 template <Question question>
-void start(const CellReader& cells, Rays& rays, std::size_t begin, std::size_t end, RayQueue& travelling) {
+void start(const CellReader& cells, float threshold, Rays& rays, std::size_t begin, std::size_t end,
+           RayQueue& travelling) {
   const Floats zero = hn::Zero(kF);
   const Ints one = hn::Set(kI, 1);
   for (std::size_t at = begin; at < end; at += hn::Lanes(kF)) {
@@ -72,6 +91,11 @@ void start(const CellReader& cells, Rays& rays, std::size_t begin, std::size_t e
       direction[a] = hn::Xor(r.direction[a], mirror);
     }
     const Corners corners = cells.corners(cells.offset(cell), r.isovalue);
+    // The ray follows the level set that its start lies on; the isovalue may name it less precisely.
+    const Floats off = value(corners, place);
+    const Mask is_off = hn::Gt(hn::Abs(off), rounding(corners, r.isovalue, zero));
+    const Floats exact = hn::Max(hn::Add(hn::Xor(r.isovalue, cells.sign), off), hn::Set(kF, threshold));
+    r.isovalue = hn::IfThenElse(is_off, hn::Xor(exact, cells.sign), r.isovalue);
     const Deflated polynomial = deflated(corners, place, direction);
     const Ints planes[3] = {hn::Add(r.cell[0], one), hn::Add(r.cell[1], one), hn::Add(r.cell[2], one)};
     const Exit exit = leave(r, planes);
@@ -82,13 +106,21 @@ void start(const CellReader& cells, Rays& rays, std::size_t begin, std::size_t e
     const Mask blocked = hn::And(inside, goes_inwards(polynomial));
     const Mask again = next_root(polynomial, hn::IfThenElse(goes_on, exit.t, end_of_box), root);
     const Mask hit = hn::AndNot(blocked, hn::And(inside, again));
+    const Floats noise = rounding(corners, r.isovalue, exit.t);
+    Mask doubtful = hn::And(inside, is_doubtful(polynomial, exit.t, noise));
+    if (question == Question::kFirstHit) {
+      const Mask is_sharp = hn::Le(noise, hn::Mul(hn::Set(kF, kAccuracy), slope_at_root(polynomial, root)));
+      doubtful = hn::Or(doubtful, hn::AndNot(is_sharp, hit));
+    }
+    if (!hn::AllFalse(kF, doubtful)) doubt(doubtful, r.id, rays);
     Floats t = hn::IfThenElse(hit, root, hn::Set(kF, kEscaped));
     if (question == Question::kAnyHit) t = hn::IfThenElse(hit, zero, t);
     hn::StoreU(hn::IfThenElse(blocked, zero, t), kF, rays.t.data() + at);
     for (int a = 0; a < 3; ++a) r.cell[a] = exit.cell[a];
     r.t = exit.t;
-    mark(r, is_flat(polynomial));
-    append_lanes(travelling, r, hn::And(hn::AndNot(hn::Or(blocked, hit), inside), goes_on));
+    mark(r, stays_on_it(polynomial, exit.t, noise));
+    const Mask answered = hn::Or(doubtful, hn::Or(blocked, hit));
+    append_lanes(travelling, r, hn::And(hn::AndNot(answered, inside), goes_on));
   }
 }
 
@@ -250,6 +282,7 @@ void travel(const Guide& guide, RayQueue& travelling, RayQueue& waiting, TraceCo
 struct RootQueue {
   alignas(64) float b[4][RayQueue::kCapacity + 2 * kPadding];
   alignas(64) float high[RayQueue::kCapacity + 2 * kPadding];
+  alignas(64) float noise[RayQueue::kCapacity + 2 * kPadding];  ///< of the cubic's values
   alignas(64) float t_enter[RayQueue::kCapacity + 2 * kPadding];
   alignas(64) float t_leave[RayQueue::kCapacity + 2 * kPadding];
   alignas(64) float id[RayQueue::kCapacity + 2 * kPadding];
@@ -258,26 +291,17 @@ struct RootQueue {
   [[nodiscard]] std::size_t ray(std::size_t at) const { return std::size_t(std::bit_cast<std::int32_t>(id[at])); }
 };
 
-HWY_INLINE void append_roots(RootQueue& roots, const Cubic& cubic, Floats high, Ints id, Floats t_enter, Floats t_leave,
-                             Mask mask) {
+HWY_INLINE void append_roots(RootQueue& roots, const Cubic& cubic, Floats high, Floats noise, Ints id, Floats t_enter,
+                             Floats t_leave, Mask mask) {
   const Packing packing(mask);
   const std::size_t at = roots.count;
   for (int i = 0; i < 4; ++i) packing.store(cubic.b[i], roots.b[i] + at);
   packing.store(high, roots.high + at);
+  packing.store(noise, roots.noise + at);
   packing.store(t_enter, roots.t_enter + at);
   packing.store(t_leave, roots.t_leave + at);
   packing.store(hn::BitCast(kF, number_of(id)), roots.id + at);
   roots.count += packing.count();
-}
-
-/// The answer to whether there is a hit.
-HWY_INLINE void answer(Mask hit, Ints id, Rays& rays) {
-  alignas(64) std::int32_t number[hn::MaxLanes(kI)];
-  hn::Store(number_of(id), kI, number);
-  std::uint8_t bytes[8] = {};
-  hn::StoreMaskBits(kF, hit, bytes);
-  for (unsigned bits = bytes[0] | unsigned(bytes[1]) << 8; bits != 0; bits &= bits - 1)
-    rays.t[std::size_t(number[std::countr_zero(bits)])] = 0.0f;
 }
 
 /// Asks for the corner values of the vector of cells at `at` ahead of their use.
@@ -313,9 +337,9 @@ HWY_INLINE void places_in_cell(const Lanes& r, const Exit& exit, Floats (&from)[
 }
 
 /// The answers for rays that enter a cell still on their level set, whose root at the entry is none: in place of what
-/// the cubic says of `fresh` lanes. Rare (plateaus), so it has its own branch.
-HWY_INLINE void restart(Mask fresh, const Cubic& cubic, Floats t_leave, Lanes& r, Mask& hit, Floats& high,
-                        Floats& t_enter) {
+/// the cubic says of `fresh` lanes. Rare (plateaus, sites beside a face), so it has its own branch.
+HWY_INLINE void restart(Mask fresh, const Cubic& cubic, Floats noise, Floats t_leave, Lanes& r, Mask& hit,
+                        Mask& doubtful, Floats& high, Floats& t_enter) {
   const Deflated polynomial = deflated(cubic);
   const Floats zero = hn::Zero(kF);
   Floats root;
@@ -326,7 +350,10 @@ HWY_INLINE void restart(Mask fresh, const Cubic& cubic, Floats t_leave, Lanes& r
   // A bracket of no length: the root is its own entry.
   high = hn::IfThenElse(fresh, zero, high);
   t_enter = hn::IfThenElse(hn::And(fresh, again), lerp(r.t, t_leave, root), t_enter);
-  mark(r, hn::And(fresh, is_flat(polynomial)));
+  const Floats whole = hn::Set(kF, 1.0f);
+  const Mask unsure = hn::Or(again, is_doubtful(polynomial, whole, noise));
+  doubtful = hn::Or(hn::AndNot(fresh, doubtful), hn::And(fresh, unsure));
+  mark(r, hn::And(fresh, stays_on_it(polynomial, whole, noise)));
 }
 
 /// Third stage: tests the cells of the waiting rays; hits go to `roots` (or are answered at once if any hit will do),
@@ -353,36 +380,53 @@ void test(const CellReader& cells, RayQueue& waiting, RayQueue& travelling, Root
     // Reached already at the entry: the root lies on the face, on the last cell's side by rounding.
     const Mask at_entry = hn::And(present, hn::Ge(cubic.b[0], zero));
     Floats high;
-    const Mask reaches = hn::And(present, reaches_zero(cubic, high));
-    Mask hit = hn::Or(at_entry, reaches);
+    const Floats noise = rounding(corners, r.isovalue, exit.t);
+    Mask doubtful;
+    Mask hit = hn::Or(at_entry, hn::And(present, reaches_zero(cubic, noise, high, doubtful)));
+    doubtful = hn::And(present, hn::Or(doubtful, at_entry));
     high = hn::IfThenElse(at_entry, zero, high);
     Floats t_enter = r.t;
     const Mask fresh = hn::And(present, still_on_it(r));
-    if (!hn::AllFalse(kF, fresh)) restart(fresh, cubic, exit.t, r, hit, high, t_enter);
+    if (!hn::AllFalse(kF, fresh)) restart(fresh, cubic, noise, exit.t, r, hit, doubtful, high, t_enter);
+    if (!hn::AllFalse(kF, doubtful)) {
+      doubt(doubtful, r.id, rays);
+      hit = hn::AndNot(doubtful, hit);
+    }
     if (question == Question::kAnyHit) {
-      answer(hit, r.id, rays);
+      for_each_ray(hit, r.id, [&](std::size_t ray) { rays.t[ray] = 0.0f; });
     } else {
-      append_roots(roots, cubic, high, r.id, t_enter, exit.t, hit);
+      append_roots(roots, cubic, high, noise, r.id, t_enter, exit.t, hit);
     }
     for (int a = 0; a < 3; ++a) r.cell[a] = exit.cell[a];
     r.t = exit.t;
-    const Mask on = hn::AndNot(hit, present);
+    const Mask on = hn::AndNot(hn::Or(hit, doubtful), present);
     append_lanes(travelling, r, hn::And(on, in_box(r.cell, r.mirror, cells.last_cell)));
   }
   waiting.count = 0;
 }
 
-/// Last stage: solves the queued cubics.
+/// Last stage: solves the queued cubics. Where rounding may shift a root by more than the accuracy promised (a ray that
+/// grazes its level set) the hit is vague.
 void solve(RootQueue& roots, Rays& rays) {
   alignas(64) float t[hn::MaxLanes(kF)];
-  for (std::size_t at = 0; at < roots.count; at += hn::Lanes(kF)) {
+  const std::size_t lanes = hn::Lanes(kF);
+  for (std::size_t at = 0; at < roots.count; at += lanes) {
     Cubic cubic;
     for (int i = 0; i < 4; ++i) cubic.b[i] = hn::LoadU(kF, roots.b[i] + at);
     const Floats high = hn::LoadU(kF, roots.high + at);
-    const Floats s = hn::IfThenZeroElse(hn::Le(high, hn::Zero(kF)), bracketed_root(cubic, high));
-    hn::Store(lerp(hn::LoadU(kF, roots.t_enter + at), hn::LoadU(kF, roots.t_leave + at), s), kF, t);
-    const std::size_t n = HWY_MIN(hn::Lanes(kF), roots.count - at);
+    const Floats enter = hn::LoadU(kF, roots.t_enter + at);
+    const Floats leave_at = hn::LoadU(kF, roots.t_leave + at);
+    const Mask known = hn::Le(high, hn::Zero(kF));
+    const Floats s = hn::IfThenZeroElse(known, bracketed_root(cubic, high));
+    hn::Store(lerp(enter, leave_at, s), kF, t);
+    const std::size_t n = HWY_MIN(lanes, roots.count - at);
     for (std::size_t i = 0; i < n; ++i) rays.t[roots.ray(at + i)] = t[i];
+    // Newton's steps are slow where the ray nearly touches: what they left counts, too.
+    const Floats off = hn::Add(hn::LoadU(kF, roots.noise + at), hn::Abs(value(cubic, s)));
+    const Floats shift = hn::Mul(off, hn::Sub(leave_at, enter));
+    const Mask sure = hn::Or(known, hn::Le(shift, hn::Mul(slope(cubic, s), hn::Set(kF, kAccuracy))));
+    const Mask unsure = hn::AndNot(sure, hn::FirstN(kF, n));
+    for_each_ray(unsure, load_ints(roots.id + at), [&](std::size_t ray) { rays.vague.push_back(std::uint32_t(ray)); });
   }
   roots.count = 0;
 }

@@ -6,6 +6,7 @@
 // After foreach_target.h, in this order.
 #include <hwy/highway.h>
 
+#include "ray_march.h"
 #include "wide/stages-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -20,11 +21,12 @@ void run_stages(const FieldView& field, const OccupancyView& occupancy, Rays& ra
   static thread_local RootQueue roots;
   const CellReader cells(field);
   const Guide guide(occupancy, cells);
+  const float threshold = field.outer == OuterSide::kLower ? occupancy.threshold : -occupancy.threshold;
   travelling.count = waiting.count = roots.count = 0;
   for (std::size_t next = 0; next < rays.count || travelling.count > 0;) {
     const std::size_t room = (RayQueue::kCapacity - travelling.count) / hn::Lanes(kF) * hn::Lanes(kF);
     const std::size_t end = HWY_MIN(rays.count, next + room);
-    start<question>(cells, rays, next, end, travelling);
+    start<question>(cells, threshold, rays, next, end, travelling);
     next = end;
     travel(guide, travelling, waiting, counters);
     counters.cells += waiting.count;
@@ -53,9 +55,36 @@ namespace isolux::wide {
 
 HWY_EXPORT(trace_rays);
 
+namespace {
+
+/// Answers the doubtful and the vague rays in double precision.
+void decide(const FieldView& field, Rays& rays, TraceCounters& counters) {
+  const Lattice lattice{.size = field.size, .frame = {}};
+  const RayMarch march(GridView<const float>(lattice, {field.values, lattice.count()}));
+  TraceCounters extra;
+  const auto ask = [&](std::uint32_t i, bool is_near) {
+    const Vec3 origin(rays.origin[0][i], rays.origin[1][i], rays.origin[2][i]);
+    const Vec3 way(rays.direction[0][i], rays.direction[1][i], rays.direction[2][i]);
+    const auto isovalue = double(rays.isovalue[i]);
+    std::optional<LevelSetHit> hit;
+    if (is_near) hit = march.hit_in_cell(origin, way, isovalue, field.outer, double(rays.t[i]), extra);
+    if (!hit) hit = march.next_hit(origin, way, isovalue, field.outer, RootWish::kPlace, kEscaped, extra);
+    rays.t[i] = hit ? float(hit->t) : kEscaped;
+  };
+  for (const std::uint32_t i : rays.vague) ask(i, true);
+  for (const std::uint32_t i : rays.doubtful) ask(i, false);
+  counters.cells += extra.cells;
+  counters.cubics += extra.cubics;
+}
+
+}  // namespace
+
 void trace(const FieldView& field, const OccupancyView& occupancy, Question question, Rays& rays,
            TraceCounters& counters) {
+  rays.doubtful.clear();
+  rays.vague.clear();
   HWY_DYNAMIC_DISPATCH(trace_rays)(field, occupancy, question, rays, counters);
+  decide(field, rays, counters);
 }
 
 }  // namespace isolux::wide

@@ -1,0 +1,141 @@
+// The exactness of the wide kernels at the size of real work. ISOLUX_STRESS=N takes N times as many rays, and volumes
+// of 256^3 in place of 32^3; 100 for a million rays of each volume. ISOLUX_DATA adds real volumes.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+#include <isolux/raytrace_flat/gather.h>
+#include <isolux/raytrace_flat/level_set_intersector.h>
+#include <isolux/volume_io/read.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <iostream>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "physics_support.h"
+#include "wide_targets.h"
+
+namespace isolux::test {
+namespace {
+
+/// gen:NAME:N, larger in a campaign, or a file of ISOLUX_DATA.
+struct Source {
+  std::string name;
+  bool is_file;
+};
+
+std::optional<Volume> volume_of(const Source& source) {
+  if (!source.is_file) return read_volume("gen:" + source.name + (stress() > 1 ? ":256" : ":32"));
+  const char* folder = std::getenv("ISOLUX_DATA");
+  if (folder == nullptr) return std::nullopt;
+  return read_volume(std::string(folder) + "/" + source.name + ".nrrd");
+}
+
+Sites sites_anywhere(const Volume& volume, std::size_t count, OuterSide outer) {
+  const TrilinearField field(volume);
+  const Vec3 extent(volume.lattice().size - 1);
+  RandomStream random(23, 1);
+  Sites sites;
+  while (sites.size() < count) {
+    const Vec3f p(Vec3(random.uniform_double(), random.uniform_double(), random.uniform_double()) * extent);
+    const Vec3 normal = field.normal(Vec3(p), outer, GradientKind::kCentralDifferences);
+    if (normal == Vec3(0.0)) continue;
+    sites.positions.push_back(p);
+    sites.isovalues.push_back(float(field.value(Vec3(p))));
+    sites.normals.emplace_back(normal);
+  }
+  return sites;
+}
+
+/// How the wide kernels' first hits compare with those of the double-precision oracle.
+struct Comparison {
+  std::size_t rays = 0;
+  std::size_t hits = 0;
+  std::size_t wrong = 0;      ///< hit here, miss there
+  std::size_t elsewhere = 0;  ///< hits more than 1e-4 voxel apart
+  double worst = 0.0;         ///< voxels
+};
+
+Comparison compare(const Volume& volume, const Sites& sites, int rays) {
+  const LevelSetIntersector oracle(volume);
+  Comparison sum;
+  std::mutex adding;
+  (void)gather(volume, sites, {.rays = rays}, isolux::Run{}, [&](const GatheredRays& gathered) {
+    Comparison part;
+    for (std::size_t i = 0; i < gathered.index_distance.size(); ++i) {
+      const std::size_t site = gathered.sites[i / gathered.rays];
+      const Vec3 direction(gathered.index_direction[0][i], gathered.index_direction[1][i],
+                           gathered.index_direction[2][i]);
+      const auto expected =
+          oracle.next_hit(Vec3(sites.positions[site]), direction, sites.isovalues[site], OuterSide::kLower);
+      ++part.rays;
+      part.wrong += std::size_t(expected.has_value() == gathered.escaped(i));
+      if (!expected || gathered.escaped(i)) continue;
+      ++part.hits;
+      const double apart = std::abs(expected->t - double(gathered.index_distance[i])) * glm::length(direction);
+      part.worst = std::max(part.worst, apart);
+      part.elsewhere += std::size_t(apart > 1e-4);
+    }
+    const std::scoped_lock lock(adding);
+    sum.rays += part.rays;
+    sum.hits += part.hits;
+    sum.wrong += part.wrong;
+    sum.elsewhere += part.elsewhere;
+    sum.worst = std::max(sum.worst, part.worst);
+  });
+  return sum;
+}
+
+void report(const std::string& line) {
+  if (stress() > 1) std::cout << line << std::endl;
+}
+
+class WideCampaign : public testing::TestWithParam<int64_t> {
+ protected:
+  void SetUp() override { choose_target(GetParam()); }
+  void TearDown() override { choose_target(0); }
+};
+
+TEST_P(WideCampaign, AgreesWithTheOracleOnVolumes) {
+  const std::vector<Source> sources = {
+      {"gyroid", false}, {"marschner-lobb", false}, {"noise", false}, {"bonsai", true}, {"engine", true}};
+  for (const Source& source : sources) {
+    const auto volume = volume_of(source);
+    if (!volume) continue;
+    const Sites sites = sites_anywhere(*volume, std::size_t(stress() > 1 ? 160 * stress() : 40), OuterSide::kLower);
+    const Comparison c = compare(*volume, sites, 64);
+    EXPECT_EQ(c.wrong, 0u) << source.name << ", of " << c.rays << " rays";
+    EXPECT_EQ(c.elsewhere, 0u) << source.name << ", of " << c.hits << " hits";
+    RecordProperty(source.name, std::to_string(c.rays));
+    report(fmt::format("{:<15} {} rays, {} hits, {} wrong, {} off by more than 1e-4 voxel, worst {:.1e}", source.name,
+                       c.rays, c.hits, c.wrong, c.elsewhere, c.worst));
+  }
+}
+
+/// Closed spheres seen from inside: whoever gets out has leaked.
+TEST_P(WideCampaign, NoRayLeavesAClosedLevelSet) {
+  const Volume volume = read_volume("gen:cavity:96");
+  const Vec3 centre(47.5);
+  Sites all = sites_anywhere(volume, std::size_t(stress() > 1 ? 400 * stress() : 100), OuterSide::kLower);
+  Sites closed;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    // Half a voxel from where they are open: the grid's interpolant is that far from the sphere at most.
+    if (glm::distance(Vec3(all.positions[i]), centre) > 47.0) continue;
+    closed.positions.push_back(all.positions[i]);
+    closed.isovalues.push_back(all.isovalues[i]);
+    closed.normals.push_back(all.normals[i]);
+  }
+  for (const RayQuestion question : {RayQuestion::kAnyHit, RayQuestion::kFirstHit}) {
+    const TraceCounters counters =
+        gather(volume, closed, {.rays = 64, .question = question}, isolux::Run{}, [](const GatheredRays&) {});
+    EXPECT_EQ(counters.hits, counters.rays);
+    report(fmt::format("closed spheres  {} rays, {} leaked", counters.rays, counters.rays - counters.hits));
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(EveryInstructionSet, WideCampaign, testing::ValuesIn(wide_targets()), wide_target_name);
+
+}  // namespace
+}  // namespace isolux::test
