@@ -18,7 +18,7 @@ namespace {
 constexpr int kLayer = BrickIndex::kHeight;
 
 /// Where more of the bricks hold both sides, the sparse way saves nothing: bits by bricks cost more than by rows.
-constexpr double kDense = 0.4;
+constexpr double kDense = 0.2;
 
 VertexFrame vertex_frame(const Lattice& lattice, const LevelSet& level_set) {
   VertexFrame frame{};
