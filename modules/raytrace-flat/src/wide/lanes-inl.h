@@ -1,5 +1,4 @@
-// Vectors, the queue of rays between the stages, and how a stage takes lanes from it. Included once per instruction
-// set.
+// Vectors of rays in mirrored coordinates, and how they leave boxes. Included once per instruction set.
 #if defined(ISOLUX_WIDE_LANES_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef ISOLUX_WIDE_LANES_INL_H_
 #undef ISOLUX_WIDE_LANES_INL_H_
@@ -9,7 +8,6 @@
 
 #include <hwy/highway.h>
 
-#include "wide/pack_order.h"
 #include "wide/rays.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -62,82 +60,6 @@ HWY_INLINE Ints number_of(Ints id) { return hn::And(id, hn::Set(kI, 0x7FFFFFFF))
 HWY_INLINE void mark(Lanes& r, Mask on_level_set) {
   const Ints marked = hn::Or(r.id, hn::Set(kI, -0x7FFFFFFF - 1));
   r.id = hn::IfThenElse(hn::RebindMask(kI, on_level_set), marked, number_of(r.id));
-}
-
-/// Rays on their way between two stages; structure of arrays.
-struct RayQueue {
-  static constexpr std::size_t kCapacity = 1024;
-  static constexpr std::size_t kFields = 12;
-
-  alignas(64) float field[kFields][kCapacity + 2 * kPadding];
-  std::size_t count = 0;
-
-  [[nodiscard]] bool room_for(std::size_t rays) const { return count + rays <= kCapacity; }
-};
-
-HWY_INLINE Ints load_ints(const float* from) { return hn::BitCast(kI, hn::LoadU(kF, from)); }
-
-HWY_INLINE Lanes load_lanes(const RayQueue& queue, std::size_t at) {
-  Lanes r;
-  for (int a = 0; a < 3; ++a) {
-    r.origin[a] = hn::LoadU(kF, queue.field[a] + at);
-    const Floats signed_direction = hn::LoadU(kF, queue.field[3 + a] + at);
-    r.direction[a] = hn::Abs(signed_direction);
-    r.inverse[a] = hn::Div(hn::Set(kF, 1.0f), r.direction[a]);
-    r.mirror[a] = hn::BroadcastSignBit(hn::BitCast(kI, signed_direction));
-    r.cell[a] = load_ints(queue.field[6 + a] + at);
-  }
-  r.t = hn::LoadU(kF, queue.field[9] + at);
-  r.isovalue = hn::LoadU(kF, queue.field[10] + at);
-  r.id = load_ints(queue.field[11] + at);
-  return r;
-}
-
-/// Packs the lanes of a mask to the front of vectors. (Highway's CompressStore looks the permutation up again for each
-/// vector, and release 1.0 with GCC 12 copies its table to the stack each time: a quarter of this speed.)
-class Packing {
- public:
-  explicit HWY_INLINE Packing(Mask mask) : count_(hn::CountTrue(kF, mask)), mask_(mask) {
-#if HWY_TARGET != HWY_AVX3
-    static_assert(hn::MaxLanes(kI) <= 8);
-    std::uint8_t bits[8];
-    hn::StoreMaskBits(kF, mask, bits);
-    const hn::Rebind<std::uint8_t, IntTag> bytes;
-    order_ = hn::IndicesFromVec(kF, hn::PromoteTo(kI, hn::LoadU(bytes, kPackOrder[bits[0]].data())));
-#endif
-  }
-  [[nodiscard]] HWY_INLINE std::size_t count() const { return count_; }
-  /// Writes a whole vector, the packed lanes first.
-  HWY_INLINE void store(Floats v, float* to) const {
-#if HWY_TARGET == HWY_AVX3
-    hn::StoreU(hn::Compress(v, mask_), kF, to);
-#else
-    hn::StoreU(hn::TableLookupLanes(v, order_), kF, to);
-#endif
-  }
-
- private:
-  std::size_t count_;
-  Mask mask_;
-#if HWY_TARGET != HWY_AVX3
-  decltype(hn::IndicesFromVec(kF, hn::Zero(kI))) order_;
-#endif
-};
-
-/// Appends the lanes of `mask`, packed. Whole vectors are stored: what lies behind the end of the queue is overwritten.
-HWY_INLINE void append_lanes(RayQueue& queue, const Lanes& r, Mask mask) {
-  const Packing packing(mask);
-  const std::size_t at = queue.count;
-  for (int a = 0; a < 3; ++a) {
-    const Floats sign = hn::BitCast(kF, hn::ShiftLeft<31>(r.mirror[a]));
-    packing.store(r.origin[a], queue.field[a] + at);
-    packing.store(hn::Or(r.direction[a], sign), queue.field[3 + a] + at);
-    packing.store(hn::BitCast(kF, r.cell[a]), queue.field[6 + a] + at);
-  }
-  packing.store(r.t, queue.field[9] + at);
-  packing.store(r.isovalue, queue.field[10] + at);
-  packing.store(hn::BitCast(kF, r.id), queue.field[11] + at);
-  queue.count += packing.count();
 }
 
 /// Where rays stand that leave through the planes `plane`: the parameter, and the cell behind.

@@ -7,7 +7,10 @@
 #include <hwy/highway.h>
 
 #include "ray_march.h"
-#include "wide/stages-inl.h"
+#include "wide/solve-inl.h"
+#include "wide/start-inl.h"
+#include "wide/test-inl.h"
+#include "wide/travel-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace isolux::wide {
