@@ -17,9 +17,6 @@ namespace {
 /// Slabs a task takes: a layer of bricks.
 constexpr int kLayer = BrickIndex::kHeight;
 
-/// Where more of the bricks hold both sides, the sparse way saves nothing: bits by bricks cost more than by rows.
-constexpr double kDense = 0.2;
-
 VertexFrame vertex_frame(const Lattice& lattice, const LevelSet& level_set) {
   VertexFrame frame{};
   Mat3 to_normal = lattice.frame.gradient_to_world();
@@ -41,15 +38,6 @@ VertexFrame vertex_frame(const Lattice& lattice, const LevelSet& level_set) {
   return frame;
 }
 
-void require_countable(const MeshSize& size, float isovalue) {
-  constexpr std::size_t kMost = std::numeric_limits<std::int32_t>::max();
-  if (3 * size.triangles > kMost || 2 * size.edges > kMost)
-    throw InvalidInput(
-        fmt::format("the level set {} has {} triangles and more: a mesh is limited to 2^31 triangle corners and "
-                    "half-edges",
-                    isovalue, size.triangles));
-}
-
 /// Makes room for `size` elements and keeps those there are. Of the whole work a part `done` has come, so memory for
 /// the rest is reserved too; what is never touched costs nothing.
 template <class T>
@@ -67,7 +55,17 @@ void grow(LargeVector<T>& vector, std::size_t size, double done) {
 
 }  // namespace
 
-RowMarch::RowMarch(const Volume& volume) : lattice_(volume.lattice()), slabs_(std::size_t(lattice_.size.z)) {
+void require_countable(const MeshSize& size, float isovalue) {
+  constexpr std::size_t kMost = std::numeric_limits<std::int32_t>::max();
+  if (3 * size.triangles > kMost || 2 * size.edges > kMost)
+    throw InvalidInput(
+        fmt::format("the level set {} has {} triangles and more: a mesh is limited to 2^31 triangle corners and "
+                    "half-edges",
+                    isovalue, size.triangles));
+}
+
+RowMarch::RowMarch(const Volume& volume, double dense)
+    : lattice_(volume.lattice()), dense_(dense), slabs_(std::size_t(lattice_.size.z)) {
   const Index3 size = lattice_.size;
   if (std::max(size.x, size.y) > 65536 || std::size_t(size.x) * std::size_t(size.y) > std::size_t(1) << 29)
     throw InvalidInput(
@@ -181,7 +179,7 @@ void RowMarch::begin(const ExtractSettings& settings, const Run& run, const Bric
   index_ = index;
   if (index == nullptr) return;
   active_words_.find(*index, settings, run, march_.words);
-  if (active_words_.share() > kDense) index_ = nullptr;
+  if (active_words_.share() > dense_) index_ = nullptr;
 }
 
 void RowMarch::classify(Layers layers, const Run& run) {
