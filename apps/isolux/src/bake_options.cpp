@@ -31,7 +31,7 @@ Scene TraceOptions::scene() const { return scene_.empty() ? Scene{} : read_scene
 
 TraceSettings TraceOptions::settings() const {
   TraceSettings settings;
-  settings.bounces = parse_bounces(bounces_);
+  if (bounces_given()) settings.bounces = parse_bounces(bounces_);
   for (const auto& [name, rays] : kQualities) {
     if (name == quality_) settings.rays = rays;
   }

@@ -18,12 +18,13 @@ class TraceOptions {
   /// \throw UsageError, IoError, InvalidInput
   [[nodiscard]] Scene scene() const;
   [[nodiscard]] bool scene_given() const { return !scene_.empty(); }
+  [[nodiscard]] bool bounces_given() const { return !bounces_.empty(); }
   [[nodiscard]] TraceSettings settings() const;
   [[nodiscard]] const std::string& tracer() const { return tracer_; }
 
  private:
   std::string scene_;
-  std::string bounces_ = "all";
+  std::string bounces_;
   std::string quality_ = "good";
   int rays_ = 0;
   std::string tracer_;

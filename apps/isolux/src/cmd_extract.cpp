@@ -50,7 +50,8 @@ std::vector<Rgb8> exact_colours(const IsoMesh& mesh, const Volume& volume, const
                                 const std::optional<LightFile>& baked, const Options& options, Session& session) {
   const PointLight light = session.timed("trace", [&] {
     const BackendChoice tracer{options.trace.tracer(), {}};
-    const TraceSettings settings = options.trace.settings();
+    TraceSettings settings = options.trace.settings();
+    if (baked && !options.trace.bounces_given()) settings.bounces = light_bounces(*baked);
     if (!baked) return light_points(volume, scene, positions(mesh), settings, tracer, session.stages, session.run);
     const LightReader reader(volume, baked->grid, TexelStorage::kBricks);
     return light_points(volume, scene, positions(mesh), settings, tracer, session.stages, session.run, reader);

@@ -49,6 +49,7 @@ struct Words {
   std::string size = "1200x800";
   std::string view = "30,20";
   std::string mode;
+  bool exact_light = false;
   double exposure = 0.0;
   std::string outer;
   std::string backend;
@@ -59,11 +60,15 @@ struct Words {
     program.get_option("VOLUME")->required(false)->description(
         "a file, a folder of DICOM slices, or gen:NAME[:N]; without one a test field is shown");
     light.add_to(program);
-    program.add_option("--scene", scene, "what lights a draft (key b; default: uniform white sky, albedo 0.8)")
+    program
+        .add_option(
+            "--scene", scene,
+            "what lights a draft (key b) and, without --light, exact light (default: uniform white sky, albedo 0.8)")
         ->type_name("SCENE.json");
     program.add_option("--iso", isovalue, "isovalue to start with (default: Otsu's threshold)")->type_name("H");
     program.add_option("--mode", mode, "global (default with --light), local, or both side by side")
         ->check(CLI::IsMember({"global", "local", "both"}));
+    program.add_flag("--exact-light", exact_light, "trace the light at the vertices of the surface, as key x does");
     program.add_option("--view", view, "from where, in degrees (default 30,20)")->type_name("AZIMUTH,ELEVATION");
     program.add_option("--exposure", exposure, "stops by which the picture is made brighter")->type_name("STOPS");
     program
@@ -89,6 +94,7 @@ struct Words {
     result.viewer.azimuth_deg = angles[0];
     result.viewer.elevation_deg = angles[1];
     result.viewer.exposure_stops = exposure;
+    result.viewer.exact_light = exact_light;
     result.viewer.help = volume.source().empty();
     result.viewer.extractor.name = backend;
     apply_settings(set, {{"extractor", &result.viewer.extractor.settings}});
@@ -98,8 +104,8 @@ struct Words {
     if (mode == "local") result.viewer.layout = viewer::Layout::kLocal;
     if (mode == "global") result.viewer.layout = viewer::Layout::kGlobal;
     if (mode == "both") result.viewer.layout = viewer::Layout::kSideBySide;
-    if (mode != "local" && !mode.empty() && !light.given()) {
-      throw UsageError("--mode " + mode + ": it shows a light; give --light LIGHT.nrrd");
+    if (mode != "local" && !mode.empty() && !light.given() && !exact_light) {
+      throw UsageError("--mode " + mode + ": it shows a light; give --light LIGHT.nrrd or --exact-light");
     }
     return result;
   }
@@ -132,7 +138,8 @@ int view(int argc, char** argv) {
   const bool given = !words.volume.source().empty();
   Volume volume = given ? words.volume.read(session) : read_volume("gen:marschner-lobb", {}, session.run);
   viewer::Document document = viewer::make_document(std::move(volume));
-  if (words.light.given()) document.light = words.light.read(*document.volume, session);
+  if (words.light.given())
+    document.light = std::make_shared<const LightFile>(words.light.read(*document.volume, session));
   viewer::run_app(std::move(document), settings, session.stages);
   return kDone;
 }

@@ -114,6 +114,20 @@ TEST_F(IsoluxView, DrawsLocalAndGlobalLightAndLeaves) {
   EXPECT_NE(both.rgb, global.rgb);
 }
 
+TEST_F(IsoluxView, TracesExactLightAtTheVertices) {
+  if (!has_xvfb()) GTEST_SKIP() << "xvfb-run or xauth is not installed";
+  // A white sky lights the outside of a ball everywhere alike; the headlight of local light would not.
+  ASSERT_EQ(run_with_display("gen:sphere:24 --iso -0.4 --size 200x200 --exact-light --screenshot " + path("exact.png")),
+            0)
+      << said();
+  const Picture exact = picture("exact.png");
+  ASSERT_EQ(exact.rgb.size(), 200u * 200u * 3u);
+  const int middle = exact.rgb[(100 * 200 + 100) * 3];
+  // Albedo .8 of 1, as an sRGB code.
+  EXPECT_NEAR(middle, 231, 2);
+  for (int x = 60; x <= 140; ++x) EXPECT_NEAR(exact.rgb[std::size_t(100 * 200 + x) * 3], middle, 1) << x;
+}
+
 TEST_F(IsoluxView, ShowsATestFieldWithoutAVolume) {
   if (!has_xvfb()) GTEST_SKIP() << "xvfb-run or xauth is not installed";
   EXPECT_EQ(run_with_display("--size 200x150 --frames 1 --screenshot " + path("field.png")), 0) << said();

@@ -11,7 +11,7 @@
 #include <thread>
 #include <utility>
 
-#include "model/bake_worker.h"
+#include "model/background_task.h"
 #include "model/document.h"
 #include "model/histogram.h"
 #include "model/surface.h"
@@ -135,16 +135,16 @@ TEST(SurfaceMaker, MakesTheSurfaceOfEveryBackend) {
   }
 }
 
-TEST(BakeWorker, HandsOverTheLightOrTheReason) {
+TEST(BackgroundTask, HandsOverTheResultOrTheReason) {
   for (const bool fails : {false, true}) {
     std::promise<void> done;
     std::atomic<int> calls{0};
-    BakeWorker worker(
+    BackgroundTask<int> worker(
         {},
         [&](const isolux::Run& run) {
           run.progress("trace", 0.5);
           if (fails) throw InvalidInput("no light today");
-          return LightFile{};
+          return 7;
         },
         [&] {
           // Once for the progress, once for the outcome.
@@ -155,9 +155,22 @@ TEST(BakeWorker, HandsOverTheLightOrTheReason) {
     EXPECT_EQ(worker.progress().fraction, 0.5);
     const auto outcome = worker.take();
     ASSERT_TRUE(outcome.has_value());
-    EXPECT_EQ(outcome->light.has_value(), !fails);
+    EXPECT_EQ(outcome->result.value_or(0), fails ? 0 : 7);
     EXPECT_EQ(outcome->error, fails ? "no light today" : "");
     EXPECT_FALSE(worker.take().has_value());
+  }
+}
+
+TEST(ExactLight, IsOneOnAConvexSurfaceWithAndWithoutABakedLight) {
+  Document document = make_document(read_volume("gen:sphere:16"));
+  const std::vector<Vec3f> positions{{0.5f, 0.5f, 0.8f}, {0.3f, 0.5f, 0.5f}};
+  Scene dim;
+  dim.environment = UniformEnvironment{.radiance = Vec3f(0.5f)};
+  const Stages stages = builtin_stages();
+  for (const Vec3f& e : trace_surface(document, dim, positions, stages, {}).radiance) EXPECT_EQ(e, Vec3f(0.5f));
+  document.light = std::make_shared<const LightFile>(bake_draft(*document.volume, Scene{}, stages, {}));
+  for (const Vec3f& e : trace_surface(document, dim, positions, stages, {}).radiance) {
+    EXPECT_NEAR(e.x, 1.0f, 1e-6f) << "the light's own scene counts";
   }
 }
 

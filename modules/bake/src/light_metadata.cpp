@@ -96,6 +96,15 @@ Vec3f light_albedo(const LightFile& light, float isovalue) {
   return scene_of(light).value_or(Scene{}).albedo.at(isovalue);
 }
 
+int light_bounces(const LightFile& light) {
+  const auto it = light.metadata.find("isolux.settings");
+  if (it == light.metadata.end()) return kAllBounces;
+  const auto json = nlohmann::json::parse(it->second, nullptr, false);
+  if (!json.is_object()) return kAllBounces;
+  const auto bounces = json.find("bounces");
+  return bounces != json.end() && bounces->is_number_integer() ? bounces->get<int>() : kAllBounces;
+}
+
 OuterSide light_outer(const LightFile& light) { return scene_of(light).value_or(Scene{}).outer; }
 
 }  // namespace isolux

@@ -18,7 +18,8 @@ Viewer::Viewer(Document document, const ViewerSettings& settings, const Stages& 
       stages_(stages),
       wake_(std::move(wake)),
       exposure_stops_(settings.exposure_stops),
-      help_(settings.help) {
+      help_(settings.help),
+      wants_exact_(settings.exact_light) {
   const std::optional<double> isovalue = settings.isovalue;
   start(std::move(document));
   if (isovalue) slider_->set_value(*isovalue);
@@ -27,13 +28,14 @@ Viewer::Viewer(Document document, const ViewerSettings& settings, const Stages& 
 }
 
 void Viewer::open(Document document) {
-  bake_.reset();
   start(std::move(document));
   request_surface();
 }
 
 void Viewer::start(Document document) {
   worker_.reset();
+  bake_.reset();
+  exact_.reset();
   document_ = std::move(document);
   shown_ = {};
   message_.clear();
@@ -46,7 +48,7 @@ void Viewer::start(Document document) {
   slider_ = std::make_unique<Slider>(range.low, range.high, otsu_threshold(document_.histogram));
   trackball_ = std::make_unique<Trackball>(orbit_camera(lattice, settings_.azimuth_deg, settings_.elevation_deg, 1.0),
                                            box_middle(lattice), box_radius(lattice));
-  if (document_.light) take_light(std::move(*document_.light));
+  if (document_.light) take_light(document_.light);
   const auto maker = std::make_shared<SurfaceMaker>(volume, stages_.extractors, settings_.extractor);
   worker_ = std::make_unique<SurfaceWorker>(
       [maker, run = settings_.run](const ExtractSettings& wanted, IndexedMesh memory, std::stop_token stop) {
@@ -58,14 +60,16 @@ void Viewer::start(Document document) {
       wake_);
 }
 
-void Viewer::take_light(LightFile light) {
-  renderer_->set_light(light.grid);
-  outer_ = settings_.outer.value_or(light_outer(light));
+void Viewer::take_light(std::shared_ptr<const LightFile> light) {
+  renderer_->set_light(light->grid);
+  shown_.exact = false;
+  outer_ = settings_.outer.value_or(light_outer(*light));
   document_.light = std::move(light);
   if (layout_ == Layout::kLocal) layout_ = Layout::kGlobal;
 }
 
 void Viewer::request_surface() {
+  exact_.reset();
   worker_->request({.isovalue = float(slider_->value()), .outer = outer_, .normals = NormalKind::kGradient});
 }
 
@@ -106,6 +110,9 @@ void Viewer::act(Action action) {
     case Action::kBake:
       start_bake();
       break;
+    case Action::kExactLight:
+      toggle_exact_light();
+      break;
     case Action::kScreenshot:
       screenshot_ = true;
       break;
@@ -123,7 +130,7 @@ void Viewer::act(Action action) {
 }
 
 void Viewer::toggle_light() {
-  if (!document_.light) {
+  if (!document_.light && !shown_.exact) {
     say(advice());
     layout_ = Layout::kLocal;
   } else {
@@ -132,7 +139,7 @@ void Viewer::toggle_light() {
 }
 
 void Viewer::show_side_by_side() {
-  if (!document_.light) {
+  if (!document_.light && !shown_.exact) {
     say(advice());
   } else {
     layout_ = layout_ == Layout::kSideBySide ? Layout::kGlobal : Layout::kSideBySide;
@@ -149,11 +156,31 @@ void Viewer::start_bake() {
   Run run = settings_.run;
   // One core is left to the window.
   run.threads = std::max(1, thread_count(run) - 1);
-  bake_ = std::make_unique<BakeWorker>(
+  bake_ = std::make_unique<BackgroundTask<LightFile>>(
       run,
       [volume = document_.volume, scene = settings_.scene, &stages = stages_](const Run& watched) {
         return bake_draft(*volume, scene, stages, watched);
       },
+      wake_);
+}
+
+void Viewer::toggle_exact_light() {
+  wants_exact_ = !wants_exact_;
+  exact_.reset();
+  if (!wants_exact_) {
+    shown_.exact = false;
+    renderer_->set_exact_light({});
+    if (!document_.light) layout_ = Layout::kLocal;
+  }
+}
+
+void Viewer::start_exact_light() {
+  Run run = settings_.run;
+  run.threads = std::max(1, thread_count(run) - 1);
+  exact_ = std::make_unique<BackgroundTask<PointLight>>(
+      run,
+      [document = document_, scene = settings_.scene, positions = shown_.surface.mesh.positions,
+       &stages = stages_](const Run& watched) { return trace_surface(document, scene, positions, stages, watched); },
       wake_);
 }
 
@@ -208,30 +235,58 @@ void Viewer::scroll(double steps) { trackball_->zoom(steps); }
 void Viewer::say(const std::string& line) { message_ = line; }
 
 bool Viewer::update() {
-  bool changed = bake_ != nullptr;
-  if (auto surface = worker_->take()) {
-    renderer_->set_surface(surface->mesh, surface->settings.isovalue);
-    shown_ = {.triangles = surface->mesh.triangles.size(), .seconds = surface->seconds};
-    if (!surface->error.empty()) say(surface->error);
-    worker_->recycle(std::move(surface->mesh));
-    changed = true;
-  }
-  if (bake_) {
-    if (auto outcome = bake_->take()) {
-      bake_.reset();
-      if (outcome->light) {
-        take_light(std::move(*outcome->light));
-        request_surface();
-        say("a draft of the light; isolux bake makes a better one");
-      } else {
-        say(outcome->error);
-      }
-    }
-  }
-  return changed;
+  const bool surface = update_surface();
+  const bool bake = update_bake();
+  return update_exact_light() || surface || bake;
 }
 
-bool Viewer::settled() const { return worker_->idle() && !bake_; }
+bool Viewer::update_surface() {
+  std::optional<Surface> surface = worker_->take();
+  if (!surface) return false;
+  renderer_->set_surface(surface->mesh, surface->settings.isovalue);
+  if (!surface->error.empty()) say(surface->error);
+  worker_->recycle(std::move(shown_.surface.mesh));
+  shown_ = {.surface = std::move(*surface)};
+  return true;
+}
+
+bool Viewer::update_bake() {
+  if (!bake_) return false;
+  auto outcome = bake_->take();
+  if (!outcome) return true;  // its progress is shown
+  bake_.reset();
+  if (outcome->result) {
+    take_light(std::make_shared<const LightFile>(std::move(*outcome->result)));
+    request_surface();
+    say("a draft of the light; isolux bake makes a better one");
+  } else {
+    say(outcome->error);
+  }
+  return true;
+}
+
+bool Viewer::update_exact_light() {
+  const bool rests = worker_->idle() && drag_ == Drag::kNone && !bake_;
+  if (wants_exact_ && !exact_ && !shown_.exact && rests && !shown_.surface.mesh.positions.empty()) start_exact_light();
+  if (!exact_) return false;
+  auto outcome = exact_->take();
+  if (!outcome) return true;
+  exact_.reset();
+  if (outcome->result) {
+    renderer_->set_exact_light(outcome->result->radiance);
+    shown_.exact = true;
+    if (layout_ == Layout::kLocal) layout_ = Layout::kGlobal;
+  } else {
+    wants_exact_ = false;
+    say(outcome->error);
+  }
+  return true;
+}
+
+bool Viewer::settled() const {
+  return worker_->idle() && !bake_ && !exact_ &&
+         (!wants_exact_ || shown_.exact || shown_.surface.mesh.positions.empty());
+}
 
 std::optional<std::string> Viewer::take_screenshot_request() {
   if (!std::exchange(screenshot_, false)) return std::nullopt;

@@ -10,7 +10,7 @@
 #include "camera/trackball.h"
 #include "gl/overlay.h"
 #include "gl/surface_renderer.h"
-#include "model/bake_worker.h"
+#include "model/background_task.h"
 #include "model/document.h"
 #include "model/surface_worker.h"
 #include "ui/keys.h"
@@ -28,8 +28,9 @@ struct ViewerSettings {
   double elevation_deg = 20.0;
   double exposure_stops = 0.0;
   bool help = false;
+  bool exact_light = false;  ///< key x, from the start
   BackendChoice extractor;
-  Scene scene;  ///< of a draft of the light
+  Scene scene;  ///< of a draft of the light, and of exact light where there is no other
   Run run;
 };
 
@@ -79,18 +80,23 @@ class Viewer {
  private:
   enum class Drag { kNone, kSlider, kRotate, kPan, kZoom };
 
-  /// What is known of the surface that the renderer has.
+  /// The surface that the renderer has.
   struct Shown {
-    std::size_t triangles = 0;
-    double seconds = 0.0;  ///< that its extraction took
+    Surface surface;
+    bool exact = false;  ///< its light was traced
   };
 
   void start(Document document);
   void request_surface();
-  void take_light(LightFile light);
+  void take_light(std::shared_ptr<const LightFile> light);
   void toggle_light();
   void show_side_by_side();
   void start_bake();
+  void toggle_exact_light();
+  void start_exact_light();
+  bool update_surface();
+  bool update_bake();
+  bool update_exact_light();
   void export_shown();
   void draw_slider(const WindowSize& size);
   void draw_texts(const WindowSize& size);
@@ -108,6 +114,7 @@ class Viewer {
   SurfaceStyle style_ = SurfaceStyle::kShaded;
   double exposure_stops_ = 0.0;
   bool help_ = false;
+  bool wants_exact_ = false;
   bool quit_ = false;
   bool screenshot_ = false;
   std::string message_;
@@ -123,7 +130,8 @@ class Viewer {
   std::unique_ptr<SurfaceRenderer> renderer_;
   Overlay overlay_;
   std::unique_ptr<SurfaceWorker> worker_;
-  std::unique_ptr<BakeWorker> bake_;
+  std::unique_ptr<BackgroundTask<LightFile>> bake_;
+  std::unique_ptr<BackgroundTask<PointLight>> exact_;
 };
 
 }  // namespace isolux::viewer

@@ -46,8 +46,8 @@ std::string grouped(std::size_t count) {
 
 std::string Viewer::title() const {
   return fmt::format("isolux - {} - isovalue {:.5g} - {} triangles in {:.0f} ms - drawn in {:.1f} ms",
-                     short_name(document_.volume->name), slider_->value(), grouped(shown_.triangles),
-                     1e3 * shown_.seconds, 1e3 * draw_seconds_);
+                     short_name(document_.volume->name), slider_->value(),
+                     grouped(shown_.surface.mesh.triangles.size()), 1e3 * shown_.surface.seconds, 1e3 * draw_seconds_);
 }
 
 void Viewer::draw_surface(const WindowSize& size) {
@@ -104,7 +104,9 @@ void Viewer::draw_texts(const WindowSize& size) {
   const auto panes = make_panes(layout_, size.width, size.height);
   for (const Pane& pane : panes) {
     label(overlay_, pane.box.x + margin, margin, font,
-          pane.lighting == Lighting::kGlobal ? "global light" : "local light");
+          pane.lighting == Lighting::kLocal ? "local light"
+          : shown_.exact                    ? "global light, exact"
+                                            : "global light");
     if (pane.box.x > 0.0) overlay_.rectangle({pane.box.x - size.scale, 0.0, 2.0 * size.scale, pane.box.height}, kInk);
   }
   double y = margin + 30.0 * size.scale;
@@ -114,11 +116,15 @@ void Viewer::draw_texts(const WindowSize& size) {
         4.0 * size.scale + label(overlay_, margin, y, font,
                                  fmt::format("baking a draft: {} {:.0f} %", progress.stage, 100.0 * progress.fraction));
   }
+  if (exact_) {
+    y += 4.0 * size.scale + label(overlay_, margin, y, font,
+                                  fmt::format("tracing exact light: {:.0f} %", 100.0 * exact_->progress().fraction));
+  }
   if (!message_.empty()) {
     label(overlay_, margin, y, font, message_);
-  } else if (!document_.light && !bake_) {
+  } else if (!document_.light && !bake_ && !exact_ && !shown_.exact) {
     label(overlay_, margin, y, font, advice());
-  } else if (shown_.triangles == 0 && worker_->idle()) {
+  } else if (shown_.surface.mesh.triangles.empty() && worker_->idle()) {
     label(overlay_, margin, y, font, "no surface at this isovalue");
   }
   const std::string value = fmt::format("isovalue {:.5g}", slider_->value());

@@ -6,6 +6,7 @@
 #include <glm/gtc/type_ptr.hpp>
 #include <glm/mat4x4.hpp>
 #include <glm/matrix.hpp>
+#include <iterator>
 #include <utility>
 
 #include "camera/framing.h"
@@ -14,6 +15,7 @@
 namespace isolux::viewer {
 namespace {
 
+constexpr GLuint kExactAttribute = 2;
 constexpr Vec3f kLineColour(0.08f, 0.1f, 0.2f);
 
 template <class Values>
@@ -29,10 +31,10 @@ SurfaceRenderer::SurfaceRenderer(std::shared_ptr<const Volume> volume)
       radius_(box_radius(volume_->lattice())),
       program_(kSurfaceVertexShader, {kSurfaceFragmentShader, light_reader_glsl()}) {
   vertex_array_.bind();
-  const Buffer* attributes[2] = {&positions_, &normals_};
-  for (GLuint i = 0; i < 2; ++i) {
+  const Buffer* attributes[] = {&positions_, &normals_, &exact_};
+  for (GLuint i = 0; i < std::size(attributes); ++i) {
     attributes[i]->bind();
-    glEnableVertexAttribArray(i);
+    if (i != kExactAttribute) glEnableVertexAttribArray(i);
     glVertexAttribPointer(i, 3, GL_FLOAT, GL_FALSE, 0, nullptr);
   }
   indices_.bind();
@@ -40,6 +42,7 @@ SurfaceRenderer::SurfaceRenderer(std::shared_ptr<const Volume> volume)
 
 void SurfaceRenderer::set_surface(const IndexedMesh& mesh, float isovalue) {
   index_count_ = 0;
+  set_exact_light({});
   vertex_array_.bind();
   positions_.fill(mesh.positions.data(), bytes(mesh.positions));
   normals_.fill(mesh.normals.data(), bytes(mesh.normals));
@@ -48,11 +51,25 @@ void SurfaceRenderer::set_surface(const IndexedMesh& mesh, float isovalue) {
   isovalue_ = isovalue;
 }
 
-void SurfaceRenderer::set_light(const IlluminationGrid& light) { light_.emplace(*volume_, light); }
+void SurfaceRenderer::set_light(const IlluminationGrid& light) {
+  light_.emplace(*volume_, light);
+  set_exact_light({});
+}
+
+void SurfaceRenderer::set_exact_light(std::span<const Vec3f> radiance) {
+  has_exact_ = !radiance.empty();
+  vertex_array_.bind();
+  if (has_exact_) {
+    exact_.fill(radiance.data(), radiance.size_bytes());
+    glEnableVertexAttribArray(kExactAttribute);
+  } else {
+    glDisableVertexAttribArray(kExactAttribute);
+  }
+}
 
 void SurfaceRenderer::draw(const SurfaceView& view) const {
   if (index_count_ == 0) return;
-  const bool global = view.lighting == Lighting::kGlobal && light_;
+  const bool global = view.lighting == Lighting::kGlobal && (light_ || has_exact_);
   const Vec3 centre(centre_);
   const glm::mat4 clip(clip_from_centred(view.camera, centre, radius_, view.aspect));
   // Place in the box from a position relative to the box's middle, whose place is 1/2 on each axis.
@@ -72,7 +89,8 @@ void SurfaceRenderer::draw(const SurfaceView& view) const {
   glUniform1i(program_.uniform("flat_colour"), 0);
   glUniform3fv(program_.uniform("line_colour"), 1, glm::value_ptr(kLineColour));
   glUniform1f(program_.uniform("isovalue"), isovalue_);
-  if (global) light_->bind(program_);
+  glUniform1i(program_.uniform("exact_light"), has_exact_ ? 1 : 0);
+  if (global && light_) light_->bind(program_);
   glEnable(GL_DEPTH_TEST);
   vertex_array_.bind();
   const bool triangles = view.style == SurfaceStyle::kTriangles;

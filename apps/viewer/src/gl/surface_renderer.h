@@ -5,6 +5,7 @@
 
 #include <memory>
 #include <optional>
+#include <span>
 
 #include "gl/light_textures.h"
 #include "gl/objects.h"
@@ -34,9 +35,11 @@ class SurfaceRenderer {
   void set_surface(const IndexedMesh& mesh, float isovalue);
   /// \throw GlError, InvalidInput as LightTextures
   void set_light(const IlluminationGrid& light);
-  [[nodiscard]] bool has_light() const { return light_.has_value(); }
+  /// e at the vertices of the surface, until another surface or light is set. \pre as many as vertices
+  /// \throw GlError if OpenGL has no memory for it
+  void set_exact_light(std::span<const Vec3f> radiance);
 
-  /// Into the current framebuffer and viewport, with depth test. Global lighting without a light draws local.
+  /// Into the current framebuffer and viewport, with depth test. Global lighting without any light draws local.
   void draw(const SurfaceView& view) const;
 
  private:
@@ -47,9 +50,11 @@ class SurfaceRenderer {
   VertexArray vertex_array_;
   Buffer positions_{GL_ARRAY_BUFFER};
   Buffer normals_{GL_ARRAY_BUFFER};
+  Buffer exact_{GL_ARRAY_BUFFER};
   Buffer indices_{GL_ELEMENT_ARRAY_BUFFER};
   GLsizei index_count_ = 0;
   float isovalue_ = 0.0f;
+  bool has_exact_ = false;
   std::optional<LightTextures> light_;
 };
 

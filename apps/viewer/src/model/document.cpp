@@ -2,8 +2,10 @@
 
 #include <fmt/format.h>
 #include <isolux/bake/light_metadata.h>
+#include <isolux/core/error.h>
 #include <isolux/mc_extract/write_mesh.h>
 #include <isolux/render/image.h>
+#include <isolux/resample/light_reader.h>
 #include <isolux/volume_io/atomic_file.h>
 
 #include <algorithm>
@@ -37,6 +39,17 @@ LightFile bake_draft(const Volume& volume, const Scene& scene, const Stages& sta
   return make_light_file(bake(volume, scene, settings, stages, run), volume, scene, settings, run);
 }
 
+PointLight trace_surface(const Document& document, const Scene& scene, std::span<const Vec3f> positions,
+                         const Stages& stages, const Run& run) {
+  TraceSettings settings;
+  if (!document.light) return light_points(*document.volume, scene, positions, settings, {}, stages, run);
+  const std::optional<Scene> lights_own = light_scene(*document.light);
+  if (!lights_own) throw InvalidInput("the light does not tell its whole scene: exact light would differ from it");
+  settings.bounces = light_bounces(*document.light);
+  const LightReader reader(*document.volume, document.light->grid);
+  return light_points(*document.volume, *lights_own, positions, settings, {}, stages, run, reader);
+}
+
 void export_surface(const Document& document, const Stages& stages, const BackendChoice& extractor,
                     const ExtractSettings& settings, const Run& run, const std::string& path) {
   const IsoMesh mesh =
@@ -44,10 +57,12 @@ void export_surface(const Document& document, const Stages& stages, const Backen
   std::vector<Rgb8> colours;
   if (document.light) {
     const Vec3f albedo = albedo_of(document, settings.isovalue);
+    const LightReader reader(*document.volume, document.light->grid);
+    const IndexToWorld& frame = document.volume->lattice().frame;
     colours.reserve(mesh.n_vertices());
     for (const auto v : mesh.vertices()) {
       const auto& p = mesh.point(v);
-      const Vec3f shown = albedo * document.light->grid.at_world({p[0], p[1], p[2]});
+      const Vec3f shown = albedo * reader.at_index(frame.index({p[0], p[1], p[2]}), double(settings.isovalue));
       colours.push_back({srgb_code(shown.x), srgb_code(shown.y), srgb_code(shown.z)});
     }
   }

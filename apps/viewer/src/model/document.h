@@ -1,11 +1,13 @@
 #pragma once
 
 #include <isolux/bake/bake.h>
+#include <isolux/bake/light_points.h>
 #include <isolux/core/volume.h>
 #include <isolux/volume_io/light_file.h>
 
 #include <memory>
 #include <optional>
+#include <span>
 
 #include "model/histogram.h"
 
@@ -15,7 +17,7 @@ namespace isolux::viewer {
 struct Document {
   std::shared_ptr<const Volume> volume;  ///< shared with the threads that work on it
   Histogram histogram;
-  std::optional<LightFile> light;
+  std::shared_ptr<const LightFile> light;  ///< none at first; shared likewise
 };
 
 /// \pre require_usable(volume)
@@ -29,6 +31,12 @@ struct Document {
 
 /// Texels of a draft: one a cell, fewer by the same factor on each axis where that would be more than `most`.
 [[nodiscard]] Index3 draft_texels(Index3 volume_size, double most);
+
+/// Light traced at the vertices of the level set of `isovalue`, with the document's light as control variate if it has
+/// one; then in its scene and with its bounces, otherwise in `scene` with all. \throw InvalidInput if the light does
+/// not tell its whole scene; as light_points()
+[[nodiscard]] PointLight trace_surface(const Document& document, const Scene& scene, std::span<const Vec3f> positions,
+                                       const Stages& stages, const Run& run);
 
 /// Writes the surface as PLY with the light at its vertices as colours, in sRGB as it is shown; without colours if
 /// there is no light. \throw IoError, InvalidInput

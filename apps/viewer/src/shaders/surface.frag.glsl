@@ -3,11 +3,13 @@
 in vec3 centred;
 in vec3 outward;
 in vec3 place;
+in vec3 exact;
 
 uniform vec3 eye;       // relative to the centre
 uniform vec3 albedo;
 uniform float exposure;
 uniform bool global_light;
+uniform bool exact_light;  // traced at the vertices, instead of read from the texture
 uniform float isovalue;
 uniform bool flat_colour;  // for lines
 uniform vec3 line_colour;
@@ -37,7 +39,7 @@ void main() {
   if (!global_light) {
     radiance = albedo * local_light(gl_FrontFacing ? n : -n);
   } else if (gl_FrontFacing) {
-    radiance = albedo * read_light(place, isovalue);
+    radiance = albedo * (exact_light ? exact : read_light(place, isovalue));
   } else {
     radiance = albedo * 0.1 * local_light(-n);  // the inner side has no light of its own
   }

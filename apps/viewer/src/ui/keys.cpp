@@ -12,6 +12,7 @@ constexpr std::array kBindings{
     KeyBinding{GLFW_KEY_L, false, Action::kToggleLight, "l", "local or global light"},
     KeyBinding{GLFW_KEY_S, false, Action::kSideBySide, "s", "both side by side"},
     KeyBinding{GLFW_KEY_B, false, Action::kBake, "b", "bake a draft of the light"},
+    KeyBinding{GLFW_KEY_X, false, Action::kExactLight, "x", "exact light, traced at rest"},
     KeyBinding{GLFW_KEY_LEFT, false, Action::kIsovalueDown, "left right", "isovalue by 1/500 of the range"},
     KeyBinding{GLFW_KEY_RIGHT, false, Action::kIsovalueUp, "", ""},
     KeyBinding{GLFW_KEY_PAGE_DOWN, false, Action::kIsovalueFarDown, "page down up", "isovalue by 1/20 of the range"},

@@ -19,6 +19,7 @@ enum class Action {
   kIsovalueFarDown,
   kIsovalueFarUp,
   kBake,
+  kExactLight,
   kScreenshot,
   kExport,
   kHelp,

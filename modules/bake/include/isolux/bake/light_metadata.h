@@ -24,6 +24,9 @@ void require_light_of(const LightFile& light, const Volume& volume, const std::s
 /// The scene that the light was baked in; nothing where the file does not tell all of it (an image environment).
 [[nodiscard]] std::optional<Scene> light_scene(const LightFile& light);
 
+/// The reflections that the light was baked with; kAllBounces where the file says nothing.
+[[nodiscard]] int light_bounces(const LightFile& light);
+
 /// The outer side that the light was baked for.
 [[nodiscard]] OuterSide light_outer(const LightFile& light);
 
