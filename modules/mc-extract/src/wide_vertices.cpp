@@ -10,6 +10,7 @@
 #define HWY_TARGET_INCLUDE "wide_vertices.cpp"
 #include <hwy/foreach_target.h>
 // After it, as Highway wants.
+#include <hwy/cache_control.h>
 #include <hwy/highway.h>
 
 HWY_BEFORE_NAMESPACE();
@@ -28,15 +29,21 @@ constexpr Ints kI;
 
 /// Crossed grid edges of one axis wait here, i | j << 16, until there are enough to fill vectors.
 struct EdgeBatch {
-  static constexpr int kCapacity = 1024;
+  static constexpr int kCapacity = 256;
   std::array<std::uint32_t, kCapacity + 64 + HWY_MAX_BYTES / 4> edges;
   int count = 0;
   float* positions;
   float* normals;
 
-  void add(std::uint64_t crossed, int j, int word) {
+  /// `ahead` is where the word lies in the highest plane that its edges' gradients read: what other edges have not yet
+  /// brought near. Asked for here it is there when the batch is computed.
+  void add(std::uint64_t crossed, int j, int word, const float* ahead) {
     const std::uint32_t first = std::uint32_t(64 * word) | std::uint32_t(j) << 16;
-    for (; crossed != 0; crossed &= crossed - 1) edges[count++] = first + std::uint32_t(std::countr_zero(crossed));
+    for (; crossed != 0; crossed &= crossed - 1) {
+      const int bit = std::countr_zero(crossed);
+      hwy::Prefetch(ahead + bit);
+      edges[count++] = first + std::uint32_t(bit);
+    }
   }
 };
 
@@ -201,9 +208,11 @@ void make_vertices_wide(const MarchState& march, int k, const VertexFrame& frame
     const int j = row_of(active[n]);
     const int word = word_of(active[n]);
     const WordBits bits(march, j, k, word);
-    along_x.add((bits.here[0] ^ bits.next[0]) & march.cell_mask(word), j, word);
-    along_y.add(bits.here[0] ^ bits.here[1], j, word);
-    along_z.add(bits.here[0] ^ bits.here[2], j, word);
+    const float* above = march.row_values(j, std::min(k + 1, march.nz - 1)) + 64 * word;
+    const float* two_above = march.row_values(j, std::min(k + 2, march.nz - 1)) + 64 * word;
+    along_x.add((bits.here[0] ^ bits.next[0]) & march.cell_mask(word), j, word, above);
+    along_y.add(bits.here[0] ^ bits.here[1], j, word, above);
+    along_z.add(bits.here[0] ^ bits.here[2], j, word, two_above);
     if (along_x.count >= EdgeBatch::kCapacity) make_x.flush(along_x);
     if (along_y.count >= EdgeBatch::kCapacity) make_y.flush(along_y);
     if (along_z.count >= EdgeBatch::kCapacity) make_z.flush(along_z);
