@@ -22,6 +22,8 @@ struct Options {
   std::string lattice = "cells";
   std::string bounce_method;
   double rmse = 0.0;
+  double time = 0.0;
+  std::string error_grid;
   std::size_t samples = 0;
   std::string sampler;
   std::string resampler;
@@ -42,6 +44,9 @@ BakeSettings bake_settings(const Options& options, const Stages& stages) {
   settings.lattice = options.lattice == "voxels" ? TexelLattice::kVoxels : TexelLattice::kCells;
   if (!options.texels.empty()) settings.texels = parse_size3("--texels", options.texels);
   if (!options.iso_range.empty()) settings.isovalues = parse_range("--iso-range", options.iso_range);
+  settings.target_rmse = options.rmse;
+  settings.target_seconds = options.time;
+  settings.wants_error_grid = !options.error_grid.empty();
   apply_settings(options.set, {{"sampler", &settings.sampler.settings},
                                {"tracer", &settings.tracer.settings},
                                {"resampler", &settings.resampler.settings}});
@@ -52,48 +57,44 @@ BakeSettings bake_settings(const Options& options, const Stages& stages) {
   return settings;
 }
 
-/// Rays a site for the error asked, from the variance that a small bake shows: the error falls with the root of the
-/// rays.
-int rays_for_error(double target, const BakeResult& pilot, int pilot_rays) {
-  const double ratio = pilot.rmse_estimate / target;
-  return int(std::clamp(std::ceil(pilot_rays * ratio * ratio), double(pilot_rays), double(1 << 20)));
-}
-
-void run_bake(const Options& options, Session& session) {
-  BakeSettings settings = bake_settings(options, session.stages);
-  const Volume volume = options.volume.read(session);
-  const Scene scene = session.timed("read", [&] { return options.trace.scene(); });
-  if (options.rmse > 0.0) {
-    BakeSettings pilot = settings;
-    pilot.trace.rays = 16;
-    settings.trace.rays = session.timed("pilot", [&] {
-      return rays_for_error(options.rmse, bake(volume, scene, pilot, session.stages, session.run), pilot.trace.rays);
-    });
-    session.say(fmt::format("{} rays a site for an error of {}", settings.trace.rays, options.rmse));
-  }
-  BakeResult result = bake(volume, scene, settings, session.stages, session.run);
-  for (const auto& [stage, seconds] : result.seconds) session.add_seconds(stage, seconds);
-  const double trace_seconds = std::max(result.seconds["trace"], 1e-9);
+void report_bake(const BakeResult& result, Session& session) {
   const Lattice& texels = result.light.lattice;
   auto& report = session.report;
   report["rays"] = result.counters.rays;
-  report["rays_per_second"] = double(result.counters.rays) / trace_seconds;
   report["hits"] = result.counters.hits;
   report["macrocells"] = result.counters.macrocells;
   report["cells"] = result.counters.cells;
   report["cubics"] = result.counters.cubics;
   report["sites"] = result.sites;
+  report["rays_a_site"] = {{"least", result.least_rays}, {"most", result.most_rays}};
+  report["skipped"] = result.skipped;
+  report["link_bytes"] = result.link_bytes;
   report["texels"] = texels.count();
   report["texel_dims"] = {texels.size.x, texels.size.y, texels.size.z};
   report["sweeps"] = result.sweeps;
   report["unlit_texels"] = result.unlit_texels;
   report["rmse_estimate"] = result.rmse_estimate;
-  report["settings"] = nlohmann::json::parse(settings_to_json(settings, session.run));
+}
+
+void run_bake(const Options& options, Session& session) {
+  const BakeSettings settings = bake_settings(options, session.stages);
+  const Volume volume = options.volume.read(session);
+  const Scene scene = session.timed("read", [&] { return options.trace.scene(); });
+  BakeResult result = bake(volume, scene, settings, session.stages, session.run);
+  for (const auto& [stage, seconds] : result.seconds) session.add_seconds(stage, seconds);
+  const double trace_seconds = std::max(result.seconds["trace"], 1e-9);
+  report_bake(result, session);
+  session.report["rays_per_second"] = double(result.counters.rays) / trace_seconds;
+  session.report["settings"] = nlohmann::json::parse(settings_to_json(settings, session.run));
   session.say(fmt::format(
       "{} texels from {} sites, {:.1f} million rays in {:.1f} s ({:.2f} million a second), error about {:.4f}",
-      texels.count(), result.sites, double(result.counters.rays) * 1e-6, trace_seconds,
+      result.light.lattice.count(), result.sites, double(result.counters.rays) * 1e-6, trace_seconds,
       double(result.counters.rays) * 1e-6 / trace_seconds, result.rmse_estimate));
   session.timed("write", [&] {
+    if (!options.error_grid.empty()) {
+      write_light(make_error_file(result, volume, scene, settings, session.run), options.error_grid, volume.space,
+                  {.compress = options.compress});
+    }
     const LightFile light = make_light_file(std::move(result), volume, scene, settings, session.run);
     // Where the level sets are known most texels are 0: gzip leaves little of them.
     const bool sparse = settings.isovalues && settings.resampler.name == "fit";
@@ -122,9 +123,16 @@ void add_bake_command(CLI::App& program, Session& session) {
                   "iterated: trace once, keep the hits and iterate on the grid (default for "
                   "sites at texels, unless --tracer is given); paths: unbiased")
       ->check(CLI::IsMember({"iterated", "paths"}));
-  command.add_option("--rmse", options->rmse, "error wanted: chooses the rays")
+  command
+      .add_option("--rmse", options->rmse,
+                  "error wanted: spends rays where they take away most error until it is reached")
       ->check(CLI::PositiveNumber)
       ->type_name("TARGET");
+  command.add_option("--time", options->time, "seconds to spend on rays and bounces; with --rmse: at most")
+      ->check(CLI::PositiveNumber)
+      ->type_name("SECONDS");
+  command.add_option("--error-grid", options->error_grid, "write the estimated standard error at each texel")
+      ->type_name("FILE.nrrd");
   command.add_option("--samples", options->samples, "number of scattered sites (default: one at each texel)")
       ->check(CLI::Range(std::size_t(1), std::size_t(1) << 40))
       ->type_name("N");

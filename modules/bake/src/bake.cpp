@@ -1,58 +1,62 @@
 #include <fmt/format.h>
 #include <isolux/bake/bake.h>
+#include <isolux/bake/kept_rays.h>
 #include <isolux/core/error.h>
 #include <isolux/core/stopwatch.h>
-#include <isolux/raytrace_flat/light_links.h>
-#include <isolux/resample/fill_unlit.h>
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
+#include <variant>
 
+#include "bake_parts.h"
 #include "resampling_choice.h"
-#include "standard_error.h"
 
 namespace isolux {
 namespace {
 
-void require_range(const Volume& volume, const std::optional<ValueRange>& wanted) {
-  const ValueRange range = value_range(volume);
-  if (range.low == range.high) {
-    throw InvalidInput(
-        fmt::format("{}: every voxel is {}; a constant volume has no level set to light", volume.name, range.low));
-  }
-  if (wanted && (wanted->high < range.low || wanted->low > range.high)) {
-    throw InvalidInput(fmt::format("isovalue range {}:{}: the values of {} go from {} to {}", wanted->low, wanted->high,
-                                   volume.name, range.low, range.high));
-  }
-}
-
-SampleSet trace_paths(const Volume& volume, const Scene& scene, Sites sites, const BakeSettings& settings,
-                      const Stages& stages, const Run& run, BakeResult& result) {
-  const Stopwatch watch;
+BakeResult bake_paths(const Volume& volume, const Scene& scene, const BakeSettings& settings, const Stages& stages,
+                      const Run& run) {
+  const auto resampler = stages.resamplers.create(settings.resampler.name, settings.resampler.settings);
   const auto tracer = stages.tracers.create(settings.tracer.name, settings.tracer.settings);
-  TraceResult traced = tracer->trace(volume, scene, std::move(sites), settings.trace, run);
+  const Lattice texels = texel_lattice(volume.lattice(), settings);
+  BakeResult result;
+  Sites sites = sample_sites(volume, scene.outer, settings, texels, stages, run, result);
+  const Stopwatch watch;
+  const TraceResult traced = tracer->trace(volume, scene, std::move(sites), settings.trace, run);
   result.seconds["trace"] = watch.seconds();
   result.counters = traced.counters;
-  return std::move(traced.samples);
+  result.least_rays = result.most_rays = std::uint32_t(settings.trace.rays);
+  finish_bake(volume, traced.samples, *resampler, texels, settings, run, result);
+  return result;
 }
 
-SampleSet iterate(const Volume& volume, const Scene& scene, Sites sites, const BakeSettings& settings,
-                  const Resampler& resampler, const Lattice& texels, const Run& run, BakeResult& result) {
-  const Stopwatch trace_watch;
-  const LightLinks links(volume, std::move(sites), {.rays = settings.trace.rays, .outer = scene.outer}, run);
-  result.seconds["trace"] = trace_watch.seconds();
-  const Stopwatch bounce_watch;
-  const auto to_grid = [&](const SampleSet& samples) {
-    return fill_unlit(resampler.resample(volume, samples, texels, run), run);
-  };
-  Solution solution =
-      links.solve(scene, {.bounces = settings.trace.bounces, .gradient = settings.trace.gradient}, to_grid, run);
-  result.seconds["bounces"] = bounce_watch.seconds();
-  result.sweeps = solution.sweeps;
-  result.counters = links.counters();
-  result.counters.rays += solution.counters.rays;
-  return std::move(solution.samples);
+/// Without bounces kept rays see what the wide tracer sees, unless that one aims at light sources or at the bright
+/// parts of an image.
+bool keeps_rays(const BakeSettings& settings, const Scene& scene) {
+  const bool aims = !scene.lights.empty() || std::holds_alternative<ImageEnvironment>(scene.environment);
+  if (settings.bounce_method == BounceMethod::kIterated) return !has_target(settings) || scene.lights.empty();
+  return has_target(settings) && settings.trace.bounces == 0 && settings.tracer.name == "wide" && !aims;
+}
+
+/// One number of rays for all sites, from what a small bake shows.
+BakeSettings with_rays_for_target(const Volume& volume, const Scene& scene, BakeSettings settings, const Stages& stages,
+                                  const Run& run, double& seconds) {
+  const Stopwatch watch;
+  BakeSettings pilot = settings;
+  pilot.target_rmse = pilot.target_seconds = 0.0;
+  pilot.wants_error_grid = false;
+  pilot.trace.rays = 16;
+  const BakeResult seen = bake(volume, scene, pilot, stages, run);
+  double factor = std::numeric_limits<double>::infinity();
+  if (settings.target_rmse > 0.0) factor = std::pow(seen.rmse_estimate / settings.target_rmse, 2.0);
+  if (settings.target_seconds > 0.0)
+    factor = std::min(factor, (settings.target_seconds - watch.seconds()) / watch.seconds());
+  settings.target_rmse = settings.target_seconds = 0.0;
+  settings.trace.rays = int(std::clamp(std::ceil(pilot.trace.rays * factor), double(pilot.trace.rays), 0x1p20));
+  seconds = watch.seconds();
+  return settings;
 }
 
 }  // namespace
@@ -84,38 +88,12 @@ BakeSettings with_defaults(BakeSettings settings, const Stages& stages) {
 BakeResult bake(const Volume& volume, const Scene& scene, const BakeSettings& given, const Stages& stages,
                 const Run& run) {
   const BakeSettings settings = with_defaults(given, stages);
-  require_usable(volume);
-  require_range(volume, settings.isovalues);
-  const auto sampler = stages.samplers.create(settings.sampler.name, settings.sampler.settings);
-  const auto resampler = stages.resamplers.create(settings.resampler.name, settings.resampler.settings);
-  const Lattice texels = texel_lattice(volume.lattice(), settings);
-
-  BakeResult result;
-  const Stopwatch sites_watch;
-  Sites sites = sampler->sample(volume,
-                                {.texels = texels,
-                                 .count = settings.samples,
-                                 .per_texel = sites_a_texel(volume.lattice(), texels, settings),
-                                 .isovalues = settings.isovalues,
-                                 .outer = scene.outer,
-                                 .gradient = settings.trace.gradient},
-                                run);
-  result.seconds["sites"] = sites_watch.seconds();
-  result.sites = sites.size();
-  if (result.sites == 0)
-    throw InvalidInput(fmt::format("{}: no site has a normal and an isovalue in the range", volume.name));
-
-  const SampleSet samples = settings.bounce_method == BounceMethod::kIterated
-                                ? iterate(volume, scene, std::move(sites), settings, *resampler, texels, run, result)
-                                : trace_paths(volume, scene, std::move(sites), settings, stages, run, result);
-  result.rmse_estimate = standard_error(samples.variance);
-
-  const Stopwatch resample_watch;
-  ResampledGrid partial = resampler->resample(volume, samples, texels, run);
-  result.unlit_texels = std::size_t(std::count(partial.lit.begin(), partial.lit.end(), std::uint8_t(0)));
-  result.light = fill_unlit(std::move(partial), run, fill_for(settings));
-  result.light.detail.isovalues = settings.isovalues;
-  result.seconds["resample"] = resample_watch.seconds();
+  if (keeps_rays(settings, scene)) return KeptRays(volume, scene, settings, stages, run).light(scene, run);
+  if (!has_target(settings)) return bake_paths(volume, scene, settings, stages, run);
+  double pilot_seconds = 0.0;
+  const BakeSettings chosen = with_rays_for_target(volume, scene, settings, stages, run, pilot_seconds);
+  BakeResult result = bake(volume, scene, chosen, stages, run);
+  result.seconds["pilot"] = pilot_seconds;
   return result;
 }
 

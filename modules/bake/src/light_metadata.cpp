@@ -35,9 +35,11 @@ std::string settings_to_json(const BakeSettings& settings, const Run& run) {
   nlohmann::json json{{"sampler", choice_to_json(settings.sampler)},
                       {"tracer", choice_to_json(settings.tracer)},
                       {"resampler", choice_to_json(settings.resampler)},
-                      {"rays", settings.trace.rays},
                       {"lattice", settings.lattice == TexelLattice::kCells ? "cells" : "voxels"},
                       {"seed", run.seed}};
+  if (settings.target_rmse > 0.0) json["rmse"] = settings.target_rmse;
+  if (settings.target_seconds > 0.0) json["time"] = settings.target_seconds;
+  if (!json.contains("rmse") && !json.contains("time")) json["rays"] = settings.trace.rays;
   if (settings.trace.bounces == kAllBounces) {
     json["bounces"] = "all";
   } else {
@@ -65,6 +67,19 @@ LightFile make_light_file(BakeResult result, const Volume& volume, const Scene& 
     light.metadata["isolux.rmse_estimate"] = fmt::format("{:.6g}", result.rmse_estimate);
   light.grid = std::move(result.light);
   return light;
+}
+
+LightFile make_error_file(const BakeResult& result, const Volume& volume, const Scene& scene,
+                          const BakeSettings& settings, const Run& run) {
+  if (!result.error) throw InvalidInput("the bake was not asked for a grid of errors");
+  LightFile file;
+  file.metadata = {{"isolux.version", kVersion},
+                   {"isolux.quantity", "standard error of irradiance/pi"},
+                   {"isolux.scene", scene_to_json(scene)},
+                   {"isolux.settings", settings_to_json(settings, run)},
+                   {"isolux.volume_sha256", volume_sha256(volume)}};
+  file.grid = *result.error;
+  return file;
 }
 
 void require_light_of(const LightFile& light, const Volume& volume, const std::string& light_path) {

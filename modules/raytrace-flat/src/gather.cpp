@@ -16,7 +16,13 @@ static_assert(GatheredRays::kEscaped == wide::kEscaped);
 TraceCounters gather(const Volume& volume, const Sites& sites, const GatherSettings& settings, const Run& run,
                      const RaySink& sink) {
   if (settings.rays < 1) throw InvalidInput(fmt::format("rays = {}: allowed is 1 and more", settings.rays));
-  const wide::Aimer aimer(volume.lattice().frame, run.seed, std::size_t(settings.rays));
+  if (settings.first_ray < 0)
+    throw InvalidInput(fmt::format("first_ray = {}: allowed is 0 and more", settings.first_ray));
+  if (!settings.keys.empty() && settings.keys.size() != sites.size())
+    throw InvalidInput(
+        fmt::format("{} keys for {} sites; there must be one of each", settings.keys.size(), sites.size()));
+  const wide::Aimer aimer(volume.lattice().frame, run.seed, std::size_t(settings.rays),
+                          std::size_t(settings.first_ray));
   const wide::BlockRequest request{
       .outer = settings.outer, .rays_per_site = aimer.rays(), .sites_per_block = aimer.sites_per_batch()};
   const auto question = settings.question == RayQuestion::kAnyHit ? wide::Question::kAnyHit : wide::Question::kFirstHit;
@@ -25,7 +31,8 @@ TraceCounters gather(const Volume& volume, const Sites& sites, const GatherSetti
   wide::for_each_block(volume, sites, request, run, "trace", [&](const wide::SiteBlock& block) {
     static thread_local wide::Batch batch;
     batch.clear(block.sites.size() * aimer.rays());
-    for (const std::uint32_t site : block.sites) aimer.append(sites, site, batch.rays, batch.world);
+    for (const std::uint32_t site : block.sites)
+      aimer.append(sites, site, settings.keys.empty() ? site : settings.keys[site], batch.rays, batch.world);
     TraceCounters counters;
     wide::trace(block.field, block.occupancy, question, batch.rays, counters);
     GatheredRays gathered;

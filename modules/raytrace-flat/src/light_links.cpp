@@ -1,16 +1,17 @@
 #include <fmt/format.h>
 #include <isolux/core/error.h>
 #include <isolux/core/parallel.h>
-#include <isolux/raytrace_flat/gather.h>
 #include <isolux/raytrace_flat/light_links.h>
 
 #include <algorithm>
-#include <cmath>
-#include <optional>
+#include <limits>
+#include <map>
 #include <utility>
 #include <variant>
 
+#include "anderson.h"
 #include "environment.h"
+#include "link_rounds.h"
 #include "trace_counters.h"
 #include "wide/aimer.h"
 #include "wide/net_mean.h"
@@ -18,121 +19,187 @@
 namespace isolux {
 namespace {
 
-constexpr std::size_t kSitesABlock = 512;
-constexpr double kParts = 65534.0;
+constexpr std::size_t kSitesABlock = 8192;
+constexpr std::size_t kBlocksATask = 4;
 
-}  // namespace
-
-/// Reads e of a grid at the ends of rays.
-class LightLinks::Reader {
+/// What the rays of one site bring, ray by ray.
+class RayValues {
  public:
-  Reader(const IlluminationGrid& grid, const Lattice& volume)
-      : stride_y_(grid.lattice.size.x), stride_z_(stride_y_ * grid.lattice.size.y), grid_(grid) {
-    const IndexToWorld to_texel = index_to_index(volume, grid.lattice);
-    origin_ = to_texel.origin;
-    for (int a = 0; a < 3; ++a) {
-      step_[a] = to_texel.axes[a] * (double(volume.size[a] - 1) / kParts);
-      corner_[a] = float(origin_[a]);
-      scale_[a] = float(step_[a][a]);
-      last_[a] = float(grid.lattice.size[a] - 1);
-      // A thousandth of a texel over the whole box is nothing.
-      for (int b = 0; b < 3; ++b) is_aligned_ = is_aligned_ && (a == b || std::fabs(step_[a][b]) * kParts < 1e-3);
-    }
-  }
+  RayValues(const Scene& scene, std::span<const float> e, int channels)
+      : scene_(scene),
+        e_(e),
+        channels_(std::size_t(channels)),
+        environment_(scene.environment),
+        uniform_(std::get_if<UniformEnvironment>(&scene.environment)) {}
 
-  /// \pre `end` is not outside
-  [[nodiscard]] Vec3 at(const End& end) const {
-    return Vec3(
-        grid_.at_index(origin_ + double(end.x) * step_[0] + double(end.y) * step_[1] + double(end.z) * step_[2]));
-  }
+  [[nodiscard]] bool wants_directions() const { return uniform_ == nullptr; }
 
-  /// Sum over the ends of hits.
-  [[nodiscard]] Vec3 sum(std::span<const End> ends) const {
-    Vec3 sum(0.0);
-    if (grid_.channels == 1 && is_aligned_) {
-      float grey = 0.0f;
-      for (const End& end : ends)
-        if (end.x != kOutside) grey += grey_at(end);
-      return Vec3(double(grey));
+  /// `world` holds the directions of the site's rays where they are wanted.
+  void fill(const LinkRound& round, const LinkBlock& block, std::size_t place, float isovalue,
+            const wide::Directions& world, std::vector<Vec3>& values) const {
+    const Vec3 albedo(scene_.albedo.at(isovalue));
+    const Vec3 emission(scene_.emission.at(isovalue));
+    const std::uint32_t* target = block.targets.data() + block.begins[place];
+    for (std::size_t k = 0; k < round.rays; ++k) {
+      if (round.hit(block, place, k)) {
+        values[k] = e_.empty() ? emission : emission + albedo * light_at(*target++);
+      } else if (uniform_ != nullptr) {
+        values[k] = Vec3(uniform_->radiance);
+      } else {
+        values[k] = environment_.radiance({world.axis[0][k], world.axis[1][k], world.axis[2][k]});
+      }
     }
-    for (const End& end : ends)
-      if (end.x != kOutside) sum += at(end);
-    return sum;
   }
 
  private:
-  /// at() of one channel and axes that agree: what sweeps spend their time with.
-  [[nodiscard]] float grey_at(const End& end) const {
-    const float x = std::clamp(corner_[0] + float(end.x) * scale_[0], 0.0f, last_[0]);
-    const float y = std::clamp(corner_[1] + float(end.y) * scale_[1], 0.0f, last_[1]);
-    const float z = std::clamp(corner_[2] + float(end.z) * scale_[2], 0.0f, last_[2]);
-    // The upper neighbour of the last texel is itself.
-    const auto i = int(x);
-    const auto j = int(y);
-    const auto k = int(z);
-    const std::ptrdiff_t dx = x < last_[0] ? 1 : 0;
-    const std::ptrdiff_t dy = y < last_[1] ? stride_y_ : 0;
-    const std::ptrdiff_t dz = z < last_[2] ? stride_z_ : 0;
-    const float* v = grid_.values.data() + (i + j * stride_y_ + k * stride_z_);
-    const float fx = x - float(i);
-    const float fy = y - float(j);
-    const float fz = z - float(k);
-    const auto mix = [](float a, float b, float f) { return a + f * (b - a); };
-    const float near = mix(mix(v[0], v[dx], fx), mix(v[dy], v[dy + dx], fx), fy);
-    const float far = mix(mix(v[dz], v[dz + dx], fx), mix(v[dz + dy], v[dz + dy + dx], fx), fy);
-    return mix(near, far, fz);
+  [[nodiscard]] Vec3 light_at(std::uint32_t target) const {
+    const float* e = &e_[target * channels_];
+    return channels_ == 1 ? Vec3(double(e[0])) : Vec3(e[0], e[1], e[2]);
   }
 
-  bool is_aligned_ = true;
-  float corner_[3];
-  float scale_[3];
-  float last_[3];
-  std::ptrdiff_t stride_y_;
-  std::ptrdiff_t stride_z_;
-  const IlluminationGrid& grid_;
-  Vec3 origin_;
-  Vec3 step_[3];
+  const Scene& scene_;
+  std::span<const float> e_;
+  std::size_t channels_;
+  PreparedEnvironment environment_;
+  const UniformEnvironment* uniform_;
+};
+
+}  // namespace
+
+struct LightLinks::Rounds {
+  std::shared_ptr<const LinkTargets> targets;
+  std::vector<LinkRound> all;
+};
+
+/// All bounces or some of them, from the light without reflections.
+class LightLinks::Solver {
+ public:
+  Solver(const LightLinks& links, const Scene& scene, const SampleSet& straight, const ToGrid& to_grid, const Run& run)
+      : links_(links), scene_(scene), straight_(straight), to_grid_(to_grid), run_(run), seen_(straight) {}
+
+  /// The light that the last reflection reads, at the targets.
+  [[nodiscard]] std::vector<float> before_last(const SolveSettings& settings, std::span<const float> start,
+                                               Solution& solution) {
+    std::vector<float> e = straight_.radiance;
+    if (settings.bounces != kAllBounces) {
+      for (int b = 1; b < settings.bounces; ++b) reflect(e).swap(e);
+      solution.sweeps = settings.bounces;
+      return at_targets(std::move(e));
+    }
+    if (start.size() == e.size()) std::copy(start.begin(), start.end(), e.begin());
+    Anderson anderson(run_);
+    while (solution.sweeps < settings.most_sweeps) {
+      ++solution.sweeps;
+      solution.change = anderson.step(e, reflect(e));
+      if (run_.progress) run_.progress("bounces", double(solution.sweeps) / double(settings.most_sweeps));
+      if (solution.change <= settings.tolerance) break;
+    }
+    return at_targets(std::move(e));
+  }
+
+ private:
+  /// The light without reflections and what one reflection of `e` adds.
+  [[nodiscard]] std::vector<float> reflect(const std::vector<float>& e) {
+    const std::vector<float> grid = reads_sites() ? std::vector<float>{} : at_targets(e);
+    const std::vector<float>& light = reads_sites() ? e : grid;
+    const auto channels = std::size_t(straight_.channels);
+    std::vector<float> next(e.size(), 0.0f);
+    for (const LinkRound& round : links_.rounds_->all) add_targets(round, straight_.channels, light, next, run_);
+    parallel_blocks(straight_.size(), kSitesABlock, run_, "", [&](const Block& block) {
+      for (std::size_t site = block.begin; site < block.end; ++site) {
+        const Vec3f albedo = scene_.albedo.at(straight_.sites.isovalues[site]) / float(links_.rays_[site]);
+        for (std::size_t c = 0; c < channels; ++c) {
+          float& value = next[site * channels + c];
+          value = straight_.radiance[site * channels + c] + albedo[int(c)] * value;
+        }
+      }
+    });
+    return next;
+  }
+
+  [[nodiscard]] bool reads_sites() const { return links_.rounds_->targets->are_sites(); }
+
+  [[nodiscard]] std::vector<float> at_targets(std::vector<float> e) {
+    if (reads_sites()) return e;
+    if (!to_grid_) throw InvalidInput("the sites do not sit at the texels: bounces want a way from samples to a grid");
+    seen_.radiance = std::move(e);
+    IlluminationGrid grid = to_grid_(seen_);
+    if (grid.lattice.size != links_.rounds_->targets->texels().size || grid.channels != straight_.channels)
+      throw InvalidInput("the grid of reflected light is not of the links' texels and the scene's channels");
+    return std::move(grid.values);
+  }
+
+  const LightLinks& links_;
+  const Scene& scene_;
+  const SampleSet& straight_;
+  const ToGrid& to_grid_;
+  const Run& run_;
+  SampleSet seen_;  ///< what to_grid_ is shown
 };
 
 LightLinks::LightLinks(const Volume& volume, Sites sites, const LinkSettings& settings, const Run& run)
     : LightLinks(volume, std::move(sites), settings, run, WithoutProbes{}) {
+  rounds_->targets = std::make_shared<const LinkTargets>(volume, sites_,
+                                                         settings.texels.value_or(cell_lattice(volume.lattice())), run);
+  trace(0, std::size_t(settings.rays), {}, run);
   probes_ = wide::choose_probes(sites_);
   Run other = run;
   other.seed = wide::probe_seed(run.seed);
   other.progress = {};
   again_.reset(new LightLinks(volume, wide::sites_of(sites_, probes_), settings, other, WithoutProbes{}));
+  again_->rounds_->targets = rounds_->targets;
+  again_->trace(0, std::size_t(settings.rays), {}, other);
   add(counters_, again_->counters_);
 }
 
 LightLinks::LightLinks(const Volume& volume, Sites sites, const LinkSettings& settings, const Run& run, WithoutProbes)
-    : volume_(volume), sites_(std::move(sites)), settings_(settings), seed_(run.seed) {
-  const GatherSettings request{.rays = settings.rays, .outer = settings.outer, .question = RayQuestion::kFirstHit};
-  if (settings.rays > 0) ends_.resize(sites_.size() * std::size_t(settings.rays));
-  counters_ = gather(volume, sites_, request, run, [&](const GatheredRays& gathered) {
-    for (std::size_t i = 0; i < gathered.index_distance.size(); ++i) {
-      const std::size_t site = gathered.sites[i / gathered.rays];
-      const double t = double(gathered.index_distance[i]);
-      const Vec3 direction(gathered.index_direction[0][i], gathered.index_direction[1][i],
-                           gathered.index_direction[2][i]);
-      ends_[site * gathered.rays + i % gathered.rays] =
-          gathered.escaped(i) ? End{kOutside, 0, 0} : end_of(sites_.positions[site], t * direction);
-    }
-  });
+    : volume_(volume),
+      sites_(std::move(sites)),
+      settings_(settings),
+      seed_(run.seed),
+      rays_(sites_.size(), std::uint32_t(std::max(0, settings.rays))),
+      rounds_(std::make_unique<Rounds>()) {
+  if (settings.rays < 1) throw InvalidInput(fmt::format("rays = {}: allowed is 1 and more", settings.rays));
 }
 
-LightLinks::End LightLinks::end_of(const Vec3f& origin, const Vec3& way) const {
-  std::uint16_t parts[3];
-  for (int a = 0; a < 3; ++a) {
-    const double place = (double(origin[a]) + way[a]) / double(volume_.lattice().size[a] - 1);
-    parts[a] = std::uint16_t(std::lround(std::clamp(place, 0.0, 1.0) * kParts));
+LightLinks::~LightLinks() = default;
+
+void LightLinks::trace(std::size_t first, std::size_t rays, std::span<const std::uint32_t> numbers, const Run& run) {
+  Run own = run;
+  own.seed = seed_;
+  const auto question = settings_.ends == LinkEnds::kKept ? RayQuestion::kFirstHit : RayQuestion::kAnyHit;
+  const RoundRequest request{.first = first, .rays = rays, .outer = settings_.outer, .question = question};
+  rounds_->all.push_back(trace_round(volume_, sites_, numbers, *rounds_->targets, request, own, counters_));
+}
+
+void LightLinks::extend(std::span<const std::uint32_t> sites, const Run& run) {
+  std::map<std::uint32_t, std::vector<std::uint32_t>> by_rays;
+  for (const std::uint32_t site : sites) by_rays[rays_[site]].push_back(site);
+  for (const auto& [rays, numbers] : by_rays) {
+    trace(rays, rays, numbers, run);
+    for (const std::uint32_t site : numbers) rays_[site] *= 2;
   }
-  return {parts[0], parts[1], parts[2]};
+  if (again_ == nullptr) return;
+  std::vector<std::uint32_t> doubled;
+  for (std::size_t p = 0; p < probes_.size(); ++p)
+    if (again_->rays_[p] != rays_[probes_[p]]) doubled.push_back(std::uint32_t(p));
+  Run quiet = run;
+  quiet.progress = {};
+  const TraceCounters before = again_->counters_;
+  again_->extend(doubled, quiet);
+  add(counters_, again_->counters_ - before);
+}
+
+std::size_t LightLinks::bytes() const {
+  std::size_t bytes = again_ == nullptr ? 0 : again_->bytes();
+  for (const LinkRound& round : rounds_->all)
+    for (const LinkBlock& block : round.blocks) bytes += block.bytes();
+  return bytes;
 }
 
 SampleSet LightLinks::lamp_light(const Scene& scene, const SolveSettings& settings, TraceCounters& counters,
                                  const Run& run) const {
   SampleSet samples;
-  samples.sites = sites_;
   samples.channels = is_grey(scene) ? 1 : 3;
   samples.radiance.resize(sites_.size() * std::size_t(samples.channels));
   samples.variance.resize(sites_.size());
@@ -151,82 +218,49 @@ SampleSet LightLinks::lamp_light(const Scene& scene, const SolveSettings& settin
   return samples;
 }
 
-void LightLinks::ray_values(std::size_t site, const Scene& scene, const Reader* e, std::vector<Vec3>& values) const {
-  const float isovalue = sites_.isovalues[site];
-  const Vec3 albedo(scene.albedo.at(isovalue));
-  const Vec3 emission(scene.emission.at(isovalue));
-  const auto* uniform = std::get_if<UniformEnvironment>(&scene.environment);
-  const std::span<const End> all = ends(site);
-  values.resize(all.size());
-  for (std::size_t k = 0; k < all.size(); ++k) {
-    if (all[k].x == kOutside) {
-      values[k] = uniform != nullptr ? Vec3(uniform->radiance) : Vec3(0.0);
-    } else {
-      values[k] = e != nullptr ? emission + albedo * e->at(all[k]) : emission;
-    }
-  }
-}
-
-void LightLinks::add_up(const Scene& scene, const SampleSet& lamps, const Reader* e, SampleSet& samples,
+void LightLinks::add_up(const Scene& scene, const SampleSet& lamps, std::span<const float> e, SampleSet& samples,
                         const Run& run) const {
-  const auto rays = std::size_t(settings_.rays);
-  const wide::Aimer aimer(volume_.lattice().frame, seed_, rays);
-  const wide::NetMean mean(aimer.points(), rays);
-  const PreparedEnvironment environment(scene.environment);
-  const bool is_uniform = std::holds_alternative<UniformEnvironment>(scene.environment);
+  const auto channels = std::size_t(lamps.channels);
+  const RayValues brought(scene, e, lamps.channels);
   samples.sites = sites_;
   samples.channels = lamps.channels;
-  samples.radiance.resize(lamps.radiance.size());
-  samples.variance.resize(lamps.variance.size());
-  parallel_blocks(sites_.size(), kSitesABlock, run, "", [&](const Block& block) {
-    std::vector<Vec3> values;
-    wide::Batch batch;
-    batch.clear(rays);
-    for (std::size_t site = block.begin; site < block.end; ++site) {
-      ray_values(site, scene, e, values);
-      if (!is_uniform) {
-        // The directions are a function of seed and site: they are made again, not kept.
-        batch.rays.count = 0;
-        aimer.append(sites_, site, batch.rays, batch.world);
-        const auto& w = batch.world.axis;
-        const std::span<const End> all = ends(site);
-        for (std::size_t k = 0; k < rays; ++k)
-          if (all[k].x == kOutside) values[k] = environment.radiance({w[0][k], w[1][k], w[2][k]});
+  samples.radiance.assign(lamps.radiance.size(), 0.0f);
+  samples.variance.assign(lamps.variance.size(), 0.0f);
+  for (const LinkRound& round : rounds_->all) {
+    const wide::Aimer aimer(volume_.lattice().frame, seed_, round.rays, round.first);
+    const wide::NetMean mean(aimer.points(), round.rays);
+    parallel_blocks(round.blocks.size(), kBlocksATask, run, "", [&](const Block& task) {
+      std::vector<Vec3> values(round.rays);
+      wide::Batch batch;
+      batch.clear(round.rays);
+      for (std::size_t b = task.begin; b < task.end; ++b) {
+        const LinkBlock& block = round.blocks[b];
+        for (std::size_t place = 0; place < block.sites.size(); ++place) {
+          const std::size_t site = block.sites[place];
+          // The directions are a function of seed and site: they are made again, not kept.
+          batch.rays.count = 0;
+          if (brought.wants_directions()) aimer.append(sites_, site, batch.rays, batch.world);
+          brought.fill(round, block, place, sites_.isovalues[site], batch.world, values);
+          const wide::NetMean::Moments moments = mean.moments(values);
+          for (std::size_t c = 0; c < channels; ++c) {
+            samples.radiance[site * channels + c] += float(moments.sum[int(c)]);
+            samples.variance[site] += float(moments.differences[int(c)] / double(channels));
+          }
+        }
       }
-      mean.put(values, site, samples);
-    }
-  });
-  for (std::size_t i = 0; i < samples.radiance.size(); ++i) samples.radiance[i] += lamps.radiance[i];
-  for (std::size_t i = 0; i < samples.variance.size(); ++i) samples.variance[i] += lamps.variance[i];
-}
-
-double LightLinks::sweep(const Scene& scene, const SampleSet& straight, const Reader& e, SampleSet& samples,
-                         const Run& run) const {
-  const auto channels = std::size_t(samples.channels);
-  const std::size_t blocks = block_count(sites_.size(), kSitesABlock);
-  std::vector<double> changes(blocks);
-  std::vector<double> squares(blocks);
-  parallel_blocks(sites_.size(), kSitesABlock, run, "", [&](const Block& block) {
-    for (std::size_t site = block.begin; site < block.end; ++site) {
-      if (sites_.normals[site] == Vec3f(0.0f)) continue;
-      Vec3 sum = e.sum(ends(site));
-      sum *= Vec3(scene.albedo.at(sites_.isovalues[site])) / double(settings_.rays);
-      for (std::size_t c = 0; c < channels; ++c) {
-        const std::size_t at = site * channels + c;
-        const double next = double(straight.radiance[at]) + sum[int(c)];
-        changes[block.index] += (next - double(samples.radiance[at])) * (next - double(samples.radiance[at]));
-        squares[block.index] += next * next;
-        samples.radiance[at] = float(next);
-      }
-    }
-  });
-  double change = 0.0;
-  double square = 0.0;
-  for (std::size_t b = 0; b < blocks; ++b) {
-    change += changes[b];
-    square += squares[b];
+    });
   }
-  return square > 0.0 ? std::sqrt(change / square) : 0.0;
+  for (std::size_t site = 0; site < sites_.size(); ++site) {
+    const auto n = float(rays_[site]);
+    const bool is_lit = sites_.normals[site] != Vec3f(0.0f);
+    for (std::size_t c = 0; c < channels; ++c) {
+      float& value = samples.radiance[site * channels + c];
+      value = is_lit ? value / n + lamps.radiance[site * channels + c] : 0.0f;
+    }
+    float& variance = samples.variance[site];
+    variance = is_lit && n > 1.0f ? variance / (2.0f * (n - 1.0f) * n) + lamps.variance[site]
+                                  : std::numeric_limits<float>::max();
+  }
 }
 
 Solution LightLinks::direct(const Scene& scene, const SolveSettings& settings, const Run& run) const {
@@ -235,46 +269,28 @@ Solution LightLinks::direct(const Scene& scene, const SolveSettings& settings, c
   return solve(scene, none, {}, run);
 }
 
-Solution LightLinks::solve(const Scene& scene, const SolveSettings& settings, const ToGrid& to_grid,
-                           const Run& run) const {
+Solution LightLinks::solve(const Scene& scene, const SolveSettings& settings, const ToGrid& to_grid, const Run& run,
+                           std::span<const float> start) const {
   require_valid(scene);
   if (scene.outer != settings_.outer) throw InvalidInput("the scene's outer side is not that of the light's links");
   if (settings.bounces < kAllBounces)
     throw InvalidInput(fmt::format("bounces = {}: allowed is -1 (all), 0 and more", settings.bounces));
+  if (settings.bounces != 0 && settings_.ends == LinkEnds::kDropped)
+    throw InvalidInput(fmt::format("bounces = {}: links whose ends were dropped allow 0", settings.bounces));
   Solution solution;
   const SampleSet lamps = lamp_light(scene, settings, solution.counters, run);
-  add_up(scene, lamps, nullptr, solution.samples, run);
-  const SampleSet straight = solution.samples;
-  const bool all = settings.bounces == kAllBounces;
-  const int most = all ? settings.most_sweeps : settings.bounces;
-  IlluminationGrid grid;
-  double before = 0.0;
-  while (solution.sweeps < most) {
-    grid = to_grid(solution.samples);
-    const std::vector<float> last = solution.samples.radiance;
-    ++solution.sweeps;
-    const double change = sweep(scene, straight, Reader(grid, volume_.lattice()), solution.samples, run);
-    if (run.progress) run.progress("bounces", double(solution.sweeps) / double(most));
-    // Changes fall like a geometric series: what is left of it is known, and added when it is small.
-    const double ratio = before > 0.0 ? std::min(change / before, 0.95) : 0.95;
-    const double tail = ratio / (1.0 - ratio);
-    before = change;
-    solution.change = change * tail;
-    if (!all || solution.change > settings.tolerance) continue;
-    for (std::size_t i = 0; i < last.size(); ++i)
-      solution.samples.radiance[i] += float(tail) * (solution.samples.radiance[i] - last[i]);
-    grid = to_grid(solution.samples);
-    break;
+  add_up(scene, lamps, {}, solution.samples, run);
+  std::vector<float> light;
+  if (settings.bounces != 0) {
+    const SampleSet straight = std::move(solution.samples);
+    light = Solver(*this, scene, straight, to_grid, run).before_last(settings, start, solution);
+    // The last reflection with what it takes to know its noise; the probes see the same light with other rays.
+    add_up(scene, lamps, light, solution.samples, run);
   }
-  std::optional<Reader> reflected;
-  if (solution.sweeps > 0) reflected.emplace(grid, volume_.lattice());
-  const Reader* e = reflected ? &*reflected : nullptr;
-  // The last sweep again with what it takes to know its noise; the probes see the same grid with other rays.
-  if (e != nullptr) add_up(scene, lamps, e, solution.samples, run);
   if (again_ == nullptr) return solution;
   SampleSet again;
-  again_->add_up(scene, again_->lamp_light(scene, settings, solution.counters, run), e, again, run);
-  wide::calibrate_variance(solution.samples, probes_, again);
+  again_->add_up(scene, again_->lamp_light(scene, settings, solution.counters, run), light, again, run);
+  wide::calibrate_variance(solution.samples, probes_, again, rays_);
   return solution;
 }
 

@@ -12,4 +12,13 @@ inline void add(TraceCounters& sum, const TraceCounters& part) {
   sum.cubics += part.cubics;
 }
 
+inline TraceCounters operator-(TraceCounters all, const TraceCounters& part) {
+  all.rays -= part.rays;
+  all.hits -= part.hits;
+  all.macrocells -= part.macrocells;
+  all.cells -= part.cells;
+  all.cubics -= part.cubics;
+  return all;
+}
+
 }  // namespace isolux

@@ -16,8 +16,9 @@ namespace isolux::wide {
 /// The first rays of sites: every site's are the same net of points with its own digital shift.
 class Aimer {
  public:
-  Aimer(const IndexToWorld& frame, std::uint64_t seed, std::size_t rays)
-      : points_(rays), to_index_(frame), seed_(mix_bits(seed)), rays_(rays) {}
+  /// Aims rays [first, first + rays) of each site.
+  Aimer(const IndexToWorld& frame, std::uint64_t seed, std::size_t rays, std::size_t first = 0)
+      : points_(first + rays), to_index_(frame), seed_(mix_bits(seed)), rays_(rays), first_(first) {}
 
   [[nodiscard]] std::size_t rays() const { return rays_; }
   [[nodiscard]] const ToIndex& to_index() const { return to_index_; }
@@ -27,7 +28,11 @@ class Aimer {
 
   /// Appends the rays of a site to the batch. \pre room for them
   void append(const Sites& sites, std::size_t site, Rays& rays, Directions& world) const {
-    const std::uint64_t bits = mix_bits(seed_ + site);
+    append(sites, site, site, rays, world);
+  }
+  /// The same with random numbers keyed by `key` instead of the site's place.
+  void append(const Sites& sites, std::size_t site, std::size_t key, Rays& rays, Directions& world) const {
+    const std::uint64_t bits = mix_bits(seed_ + key);
     const Vec3f& p = sites.positions[site];
     const Vec3f& n = sites.normals[site];
     const Pose pose{.position = {p.x, p.y, p.z},
@@ -35,7 +40,7 @@ class Aimer {
                     .normal = {n.x, n.y, n.z},
                     .shift_u = std::uint32_t(bits),
                     .shift_v = std::uint32_t(bits >> 32)};
-    aim_hemisphere(pose, points_, 0, rays_, to_index_, rays.count, rays, world);
+    aim_hemisphere(pose, points_, first_, rays_, to_index_, rays.count, rays, world);
     rays.count += rays_;
   }
 
@@ -47,6 +52,7 @@ class Aimer {
   ToIndex to_index_;
   std::uint64_t seed_;
   std::size_t rays_;
+  std::size_t first_;
 };
 
 /// A thread's arrays for a batch of rays, kept between batches.

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <map>
 #include <numeric>
 
 namespace isolux::wide {
@@ -26,19 +27,23 @@ NetMean::NetMean(const SobolPoints& points, std::size_t rays) : order_(rays) {
             [&](std::uint32_t a, std::uint32_t b) { return morton_place(points, a) < morton_place(points, b); });
 }
 
+NetMean::Moments NetMean::moments(std::span<const Vec3> values) const {
+  Moments result;
+  for (std::size_t k = 0; k < order_.size(); ++k) {
+    const Vec3& here = values[order_[k]];
+    result.sum += here;
+    if (k == 0) continue;
+    const Vec3 step = here - values[order_[k - 1]];
+    result.differences += step * step;
+  }
+  return result;
+}
+
 void NetMean::put(std::span<const Vec3> values, std::size_t site, SampleSet& samples) const {
   const auto channels = std::size_t(samples.channels);
   const auto n = double(order_.size());
   const bool is_lit = samples.sites.normals[site] != Vec3f(0.0f);
-  Vec3 sum(0.0);
-  Vec3 differences(0.0);
-  for (std::size_t k = 0; k < order_.size() && is_lit; ++k) {
-    const Vec3& here = values[order_[k]];
-    sum += here;
-    if (k == 0) continue;
-    const Vec3 step = here - values[order_[k - 1]];
-    differences += step * step;
-  }
+  const auto [sum, differences] = is_lit ? moments(values) : Moments{};
   double variance = 0.0;
   for (std::size_t c = 0; c < channels; ++c) {
     samples.radiance[site * channels + c] = float(sum[int(c)] / n);
@@ -68,22 +73,39 @@ Sites sites_of(const Sites& sites, std::span<const std::size_t> numbers) {
   return chosen;
 }
 
-void calibrate_variance(SampleSet& samples, std::span<const std::size_t> probes, const SampleSet& again) {
+void calibrate_variance(SampleSet& samples, std::span<const std::size_t> probes, const SampleSet& again,
+                        std::span<const std::uint32_t> rays) {
   constexpr double kUnknown = std::numeric_limits<float>::max();
+  constexpr std::size_t kEnough = 64;
+  struct Tally {
+    double expected = 0.0;
+    double found = 0.0;
+    std::size_t count = 0;
+    [[nodiscard]] double scale() const { return expected > 0.0 ? found / expected : 1.0; }
+  };
   const auto channels = std::size_t(samples.channels);
-  double expected = 0.0;
-  double found = 0.0;
+  Tally all;
+  std::map<std::uint32_t, Tally> by_rays;
   for (std::size_t k = 0; k < probes.size(); ++k) {
-    if (double(samples.variance[probes[k]]) == kUnknown) return;
-    expected += double(samples.variance[probes[k]]);
+    const auto variance = double(samples.variance[probes[k]]);
+    if (variance == kUnknown) return;
+    double found = 0.0;
     for (std::size_t c = 0; c < channels; ++c) {
       const double d = double(samples.radiance[probes[k] * channels + c]) - double(again.radiance[k * channels + c]);
       found += 0.5 * d * d / double(channels);
     }
+    for (Tally* tally : {&all, &by_rays[rays.empty() ? 0 : rays[probes[k]]]}) {
+      tally->expected += variance;
+      tally->found += found;
+      ++tally->count;
+    }
   }
-  if (!(expected > 0.0)) return;
-  for (float& variance : samples.variance)
-    if (double(variance) != kUnknown) variance *= float(found / expected);
+  for (std::size_t site = 0; site < samples.size(); ++site) {
+    if (double(samples.variance[site]) == kUnknown) continue;
+    const auto own = by_rays.find(rays.empty() ? 0 : rays[site]);
+    const Tally& tally = own != by_rays.end() && own->second.count >= kEnough ? own->second : all;
+    samples.variance[site] *= float(tally.scale());
+  }
 }
 
 std::uint64_t probe_seed(std::uint64_t seed) { return mix_bits(seed ^ 0x9E3779B97F4A7C15ull); }

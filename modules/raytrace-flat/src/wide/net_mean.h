@@ -17,6 +17,13 @@ class NetMean {
  public:
   NetMean(const SobolPoints& points, std::size_t rays);
 
+  /// Sum of one value a ray, and the sum of the squared differences of neighbouring strata.
+  struct Moments {
+    Vec3 sum{0.0};
+    Vec3 differences{0.0};
+  };
+  [[nodiscard]] Moments moments(std::span<const Vec3> values) const;
+
   /// Writes e and its squared standard error for a site, from one value a ray. The variance is that of neighbouring
   /// strata (successive differences, von Neumann 1941): plain variance / n would count the differences between far
   /// strata, which the net has removed. Rather too large still: see calibrate_variance.
@@ -32,8 +39,10 @@ class NetMean {
 [[nodiscard]] Sites sites_of(const Sites& sites, std::span<const std::size_t> numbers);
 
 /// Scales the variances of `samples` so that on the probes they add up to what the difference of two results with
-/// independent random numbers shows. `again` holds the second results of `probes`.
-void calibrate_variance(SampleSet& samples, std::span<const std::size_t> probes, const SampleSet& again);
+/// independent random numbers shows. `again` holds the second results of `probes`. Where sites have different numbers
+/// of rays (one a site; empty: all the same), those of a number with enough probes have a scale of their own.
+void calibrate_variance(SampleSet& samples, std::span<const std::size_t> probes, const SampleSet& again,
+                        std::span<const std::uint32_t> rays = {});
 
 /// The seed of the second results.
 [[nodiscard]] std::uint64_t probe_seed(std::uint64_t seed);

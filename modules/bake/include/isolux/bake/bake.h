@@ -2,6 +2,7 @@
 
 #include <isolux/bake/stages.h>
 
+#include <cstdint>
 #include <map>
 #include <optional>
 #include <string>
@@ -41,16 +42,30 @@ struct BakeSettings {
   std::size_t samples = 0;       ///< sites of scattering samplers; 0: sites_a_cell
   double sites_a_cell = 0.0;     ///< of the cells that can be lit; 0: what suits the resampler, one a texel mostly
   std::optional<ValueRange> isovalues;  ///< light only these level sets
+  /// Rays until BakeResult::rmse_estimate is so small, or until so many seconds have passed since the bake began; 0 for
+  /// none. They replace trace.rays. Iterated bounces, and no bounces under a uniform environment or a sky, without
+  /// light sources, spend each ray where it takes away most error; others choose one number of rays for all sites from
+  /// a small bake. With a time the result depends on the machine's speed.
+  double target_rmse = 0.0;
+  double target_seconds = 0.0;
+  bool wants_error_grid = false;  ///< fill BakeResult::error
 };
 
 struct BakeResult {
   IlluminationGrid light;
+  std::optional<IlluminationGrid> error;  ///< estimated standard error of e at the texels, one channel
   TraceCounters counters;
   std::size_t sites = 0;
   int sweeps = 0;                ///< of BounceMethod::kIterated
   std::size_t unlit_texels = 0;  ///< filled from their lit neighbours
-  double rmse_estimate =
-      0.0;  ///< root mean squared standard error of e over the sites; NaN if one ray a site says nothing of it
+  /// Root mean squared standard error of e over the sites; NaN if one ray a site says nothing of it.
+  double rmse_estimate = 0.0;
+  std::uint32_t least_rays = 0;  ///< a site
+  std::uint32_t most_rays = 0;
+  std::size_t link_bytes = 0;  ///< memory of kept rays
+  /// What was known without tracing, by reason, of sites at texels: sites_flat (no gradient, hence no normal),
+  /// sites_outside_iso_range.
+  std::map<std::string, std::uint64_t> skipped;
   std::map<std::string, double> seconds;  ///< by stage: sites, trace, bounces (of kIterated), resample
 };
 

@@ -12,6 +12,10 @@ namespace isolux {
 [[nodiscard]] LightFile make_light_file(BakeResult result, const Volume& volume, const Scene& scene,
                                         const BakeSettings& settings, const Run& run);
 
+/// BakeResult::error as a file. \throw InvalidInput if there is none
+[[nodiscard]] LightFile make_error_file(const BakeResult& result, const Volume& volume, const Scene& scene,
+                                        const BakeSettings& settings, const Run& run);
+
 /// The settings as one line of JSON.
 [[nodiscard]] std::string settings_to_json(const BakeSettings& settings, const Run& run);
 

@@ -24,6 +24,8 @@ struct GatherSettings {
   int rays = 64;  ///< a site
   OuterSide outer = OuterSide::kLower;
   RayQuestion question = RayQuestion::kFirstHit;
+  int first_ray = 0;                      ///< rays [first_ray, first_ray + rays) of each site's sequence
+  std::span<const std::uint32_t> keys{};  ///< what random numbers are keyed by, one a site; empty: the site's number
 };
 
 /// The rays of some sites and what they met, as a gather hands them over. Ray k of sites[i] is number i * rays + k of

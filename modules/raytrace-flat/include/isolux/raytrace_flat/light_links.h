@@ -11,14 +11,23 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
 namespace isolux {
 
+/// What is kept of each ray.
+enum class LinkEnds : std::uint8_t {
+  kKept,    ///< where it ends: any number of bounces
+  kDropped  ///< only whether it escaped: no bounces; quicker, a bit a ray
+};
+
 struct LinkSettings {
-  int rays = 64;  ///< a site
+  int rays = 64;  ///< a site, at first
   OuterSide outer = OuterSide::kLower;
+  LinkEnds ends = LinkEnds::kKept;
+  std::optional<Lattice> texels{};  ///< the grid that reflected light is read from; default one texel a cell
 };
 
 struct SolveSettings {
@@ -30,71 +39,75 @@ struct SolveSettings {
 
 struct Solution {
   SampleSet samples;       ///< e at the sites
-  int sweeps = 0;          ///< reflections followed
-  double change = 0.0;     ///< what was left to come after the last sweep; added by extrapolation
+  int sweeps = 0;          ///< over the links
+  double change = 0.0;     ///< what was left to come after the last sweep, estimated; rms over the rms of e
   TraceCounters counters;  ///< shadow rays
 };
 
 /// Hemisphere rays of a set of sites, traced once and kept by where they end: light that is reflected any number of
 /// times is then found by iterating over the kept ends, e(x) = direct(x) + rho(h) * mean of e(y) over the ends y, with
-/// e(y) read from a grid of the last iterate (radiosity's gathering; here a final gather at every texel). Albedo,
-/// emission and the environment change without another ray; light sources cost shadow rays. The grid's error enters as
-/// a bias. Memory: 6 bytes a ray. Immutable, callable from many threads.
+/// e(y) read from the last iterate (radiosity's gathering; here a final gather at every texel). Each ray reads ONE of
+/// the texels around its end, drawn once by its trilinear weight: on average the trilinear interpolant, and a sweep is
+/// a product with a sparse matrix. Albedo, emission and the environment change without another ray; light sources cost
+/// shadow rays. The grid's error enters as a bias. Memory: 4 bytes a ray that hits, a bit a ray and 16 bytes a site.
+/// Queries may be called from many threads.
 class LightLinks {
  public:
-  /// What a sweep reads from: e of the samples on a grid that covers the volume's box, every texel filled; for sites at
-  /// texel centres the direct resampler, else any. It must not depend on threads.
+  /// What a sweep reads from if the sites do not sit at the texels: e of the samples on LinkSettings::texels, every
+  /// texel filled. It must not depend on threads. Sites at texels are read as they are and an unlit texel as the
+  /// nearest lit one; this is not called then and may be empty.
   using ToGrid = std::function<IlluminationGrid(const SampleSet& samples)>;
 
   /// Traces the links. \pre as gather(); the volume must outlive the links. \throw Cancelled, InvalidInput
   LightLinks(const Volume& volume, Sites sites, const LinkSettings& settings, const Run& run);
+  LightLinks(const LightLinks&) = delete;
+  LightLinks& operator=(const LightLinks&) = delete;
+  ~LightLinks();
+
+  /// Doubles the rays of the sites listed, each once: their sequences go on where they ended. `run` brings threads and
+  /// progress; the seed stays. Not at the same time as any other call.
+  void extend(std::span<const std::uint32_t> sites, const Run& run);
 
   [[nodiscard]] const Sites& sites() const { return sites_; }
+  /// Rays of each site.
+  [[nodiscard]] std::span<const std::uint32_t> rays() const { return rays_; }
   [[nodiscard]] const TraceCounters& counters() const { return counters_; }
-  [[nodiscard]] std::size_t bytes() const { return ends_.size() * sizeof(End); }
+  [[nodiscard]] std::size_t bytes() const;
 
   /// e without reflections: environment, light sources, emission of what the rays hit. One channel if is_grey(scene),
   /// else three. Traces shadow rays where the scene has light sources. Variances are those of the rays.
   [[nodiscard]] Solution direct(const Scene& scene, const SolveSettings& settings, const Run& run) const;
 
-  /// e with settings.bounces reflections. \pre scene.outer is that of the links. Cost: a sweep reads each hit's e.
-  [[nodiscard]] Solution solve(const Scene& scene, const SolveSettings& settings, const ToGrid& to_grid,
-                               const Run& run) const;
+  /// e with settings.bounces reflections. \pre scene.outer is that of the links. Cost: a sweep reads each hit's e. All
+  /// bounces converge faster than one bounce a sweep (Anderson's acceleration, 1965), and from `start` (e of an
+  /// earlier solution with as many channels, empty for none) sooner. \throw InvalidInput, also for bounces where the
+  /// ends were dropped
+  [[nodiscard]] Solution solve(const Scene& scene, const SolveSettings& settings, const ToGrid& to_grid, const Run& run,
+                               std::span<const float> start = {}) const;
 
  private:
-  /// Where a ray ends: the place in the box in parts of 65534, x = kOutside for rays that leave it.
-  struct End {
-    std::uint16_t x;
-    std::uint16_t y;
-    std::uint16_t z;
-  };
-  static constexpr std::uint16_t kOutside = 65535;
-  class Reader;
+  class Solver;
+  struct Rounds;
   struct WithoutProbes {};
 
   LightLinks(const Volume& volume, Sites sites, const LinkSettings& settings, const Run& run, WithoutProbes);
-  [[nodiscard]] End end_of(const Vec3f& origin, const Vec3& way) const;
-  [[nodiscard]] std::span<const End> ends(std::size_t site) const {
-    return {ends_.data() + site * std::size_t(settings_.rays), std::size_t(settings_.rays)};
-  }
-  /// What each ray of a site brings, reflected light read from `e` (none if null).
-  void ray_values(std::size_t site, const Scene& scene, const Reader* e, std::vector<Vec3>& values) const;
-  /// e of the sites: light that comes straight from lamps, and what the rays bring.
-  void add_up(const Scene& scene, const SampleSet& lamps, const Reader* e, SampleSet& samples, const Run& run) const;
+  void trace(std::size_t first, std::size_t rays, std::span<const std::uint32_t> numbers, const Run& run);
   [[nodiscard]] SampleSet lamp_light(const Scene& scene, const SolveSettings& settings, TraceCounters& counters,
                                      const Run& run) const;
-  /// One sweep without the rays' variances: next = straight + albedo * mean of e at the hits. Returns the change.
-  double sweep(const Scene& scene, const SampleSet& straight, const Reader& e, SampleSet& samples,
-               const Run& run) const;
+  /// e of the sites and its variance: light that comes straight from lamps, and what the rays bring; reflected light
+  /// from `e` at the targets (none if empty).
+  void add_up(const Scene& scene, const SampleSet& lamps, std::span<const float> e, SampleSet& samples,
+              const Run& run) const;
 
   const Volume& volume_;
   Sites sites_;
   LinkSettings settings_;
   std::uint64_t seed_;
   TraceCounters counters_;
-  std::vector<End> ends_;  ///< settings_.rays a site
+  std::vector<std::uint32_t> rays_;
+  std::unique_ptr<Rounds> rounds_;
   std::vector<std::size_t> probes_;
-  std::unique_ptr<const LightLinks> again_;  ///< of the probes, with other random numbers: see the variances of e
+  std::unique_ptr<LightLinks> again_;  ///< of the probes, with other random numbers: see the variances of e
 };
 
 }  // namespace isolux

@@ -1,0 +1,47 @@
+#pragma once
+
+#include <isolux/bake/bake.h>
+#include <isolux/core/stopwatch.h>
+#include <isolux/raytrace_flat/light_links.h>
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+namespace isolux {
+
+/// A bake whose rays are kept: what bake() uses for BounceMethod::kIterated, and a way to light the same volume again
+/// after albedo, emission or environment changed, without tracing it again.
+class KeptRays {
+ public:
+  /// Traces settings.trace.rays a site, or a first few where settings name an error or a time. Of the scene only the
+  /// outer side counts. \pre the volume outlives this \throw as bake()
+  KeptRays(const Volume& volume, const Scene& scene, const BakeSettings& settings, const Stages& stages,
+           const Run& run);
+
+  /// The light of a scene. Rays are traced only for light sources, and where settings.target_rmse or
+  /// settings.target_seconds (counted from the construction) want more of them than there are. A second call starts
+  /// from the first one's light. BakeResult::counters are those of all rays so far. \throw as bake(); InvalidInput if
+  /// the scene's outer side is another one
+  [[nodiscard]] BakeResult light(const Scene& scene, const Run& run);
+
+  [[nodiscard]] std::uint64_t rays() const { return links_->counters().rays; }
+  [[nodiscard]] std::size_t bytes() const { return links_->bytes(); }
+
+ private:
+  [[nodiscard]] Solution solve(const Scene& scene, const Run& run, BakeResult& result);
+  /// The sites that should get more rays; none if it is enough.
+  [[nodiscard]] std::vector<std::uint32_t> wanting(const Solution& solution, double solve_seconds) const;
+
+  const Volume& volume_;
+  Stopwatch since_;
+  BakeSettings settings_;
+  Lattice texels_;
+  std::unique_ptr<const Resampler> resampler_;
+  BakeResult begun_;  ///< what the construction found
+  std::unique_ptr<LightLinks> links_;
+  double trace_seconds_ = 0.0;
+  std::vector<float> last_;  ///< e of the last solution
+};
+
+}  // namespace isolux

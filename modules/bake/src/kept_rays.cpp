@@ -1,0 +1,92 @@
+#include <isolux/bake/kept_rays.h>
+#include <isolux/core/error.h>
+#include <isolux/core/stopwatch.h>
+#include <isolux/resample/fill_unlit.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "bake_parts.h"
+#include "ray_budget.h"
+#include "standard_error.h"
+
+namespace isolux {
+namespace {
+
+/// Rays a site before anything is known: the smallest net that tells sites apart.
+constexpr int kFirstRays = 16;
+/// Rounds of doubling: more than the 2^20 rays that a site may have need.
+constexpr int kMostRounds = 24;
+
+}  // namespace
+
+KeptRays::KeptRays(const Volume& volume, const Scene& scene, const BakeSettings& given, const Stages& stages,
+                   const Run& run)
+    : volume_(volume), settings_(with_defaults(given, stages)), texels_(texel_lattice(volume.lattice(), settings_)) {
+  resampler_ = stages.resamplers.create(settings_.resampler.name, settings_.resampler.settings);
+  Sites sites = sample_sites(volume, scene.outer, settings_, texels_, stages, run, begun_);
+  const Stopwatch watch;
+  const LinkSettings request{.rays = has_target(settings_) ? kFirstRays : settings_.trace.rays,
+                             .outer = scene.outer,
+                             .ends = settings_.trace.bounces == 0 ? LinkEnds::kDropped : LinkEnds::kKept,
+                             .texels = texels_};
+  links_ = std::make_unique<LightLinks>(volume, std::move(sites), request, run);
+  trace_seconds_ = watch.seconds();
+}
+
+Solution KeptRays::solve(const Scene& scene, const Run& run, BakeResult& result) {
+  const Stopwatch watch;
+  const auto to_grid = [&](const SampleSet& samples) {
+    return fill_unlit(resampler_->resample(volume_, samples, texels_, run), run);
+  };
+  Solution solution = links_->solve(scene, {.bounces = settings_.trace.bounces, .gradient = settings_.trace.gradient},
+                                    to_grid, run, last_);
+  last_ = solution.samples.radiance;
+  result.seconds["bounces"] += watch.seconds();
+  result.sweeps += solution.sweeps;
+  return solution;
+}
+
+std::vector<std::uint32_t> KeptRays::wanting(const Solution& solution, double solve_seconds) const {
+  RayBudget budget;
+  const double error = standard_error(solution.samples.variance);
+  if (settings_.target_rmse > 0.0) {
+    if (!(error > settings_.target_rmse)) return {};
+    // A little below, lest a last round serves a few sites.
+    budget.mean_variance = 0.95 * settings_.target_rmse * settings_.target_rmse;
+  }
+  if (settings_.target_seconds > 0.0) {
+    // The time of solving grows with the rays, which may double.
+    const double left = settings_.target_seconds - since_.seconds() - 2.0 * solve_seconds;
+    budget.rays = left * double(rays()) / std::max(trace_seconds_, 1e-9);
+    if (budget.rays < 0.02 * double(rays())) return {};
+  }
+  return sites_to_double(solution.samples.variance, links_->rays(), budget);
+}
+
+BakeResult KeptRays::light(const Scene& scene, const Run& run) {
+  BakeResult result = std::exchange(begun_, {});
+  Stopwatch solving;
+  Solution solution = solve(scene, run, result);
+  for (int round = 0; has_target(settings_) && round < kMostRounds; ++round) {
+    const std::vector<std::uint32_t> sites = wanting(solution, solving.seconds());
+    if (sites.empty()) break;
+    const Stopwatch watch;
+    links_->extend(sites, run);
+    trace_seconds_ += watch.seconds();
+    solving = Stopwatch();
+    solution = solve(scene, run, result);
+  }
+  result.seconds["trace"] = trace_seconds_;
+  result.counters = links_->counters();
+  result.counters.rays += solution.counters.rays;
+  const auto rays = links_->rays();
+  const auto [least, most] = std::minmax_element(rays.begin(), rays.end());
+  result.least_rays = *least;
+  result.most_rays = *most;
+  result.link_bytes = links_->bytes();
+  finish_bake(volume_, solution.samples, *resampler_, texels_, settings_, run, result);
+  return result;
+}
+
+}  // namespace isolux

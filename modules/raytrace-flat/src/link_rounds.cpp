@@ -1,0 +1,131 @@
+#include "link_rounds.h"
+
+#include <isolux/core/parallel.h>
+
+#include <mutex>
+#include <utility>
+
+#include "trace_counters.h"
+
+namespace isolux {
+namespace {
+
+/// Blocks of links a task of a sweep takes.
+constexpr std::size_t kBlocksATask = 4;
+
+/// Adds the light of one site's targets. Two sums at once hide half of the additions' latency.
+template <int channels>
+void add_site(std::span<const std::uint32_t> targets, const float* light, float* sum) {
+  float even[channels] = {};
+  float odd[channels] = {};
+  std::size_t i = 0;
+  for (; i + 1 < targets.size(); i += 2) {
+    for (int c = 0; c < channels; ++c) {
+      even[c] += light[std::size_t(targets[i]) * channels + std::size_t(c)];
+      odd[c] += light[std::size_t(targets[i + 1]) * channels + std::size_t(c)];
+    }
+  }
+  for (int c = 0; c < channels; ++c) {
+    if (i < targets.size()) even[c] += light[std::size_t(targets[i]) * channels + std::size_t(c)];
+    sum[c] += even[c] + odd[c];
+  }
+}
+
+template <int channels>
+void add_block(const LinkBlock& block, std::span<const float> light, std::span<float> sums) {
+  for (std::size_t s = 0; s < block.sites.size(); ++s) {
+    const std::size_t begin = block.begins[s];
+    add_site<channels>({block.targets.data() + begin, block.begins[s + 1] - begin}, light.data(),
+                       &sums[std::size_t(block.sites[s]) * channels]);
+  }
+}
+
+/// The links of what a gather hands over.
+class BlockMaker {
+ public:
+  BlockMaker(const Sites& sites, std::span<const std::uint32_t> numbers, const LinkTargets& targets,
+             const RoundRequest& request, std::uint64_t seed)
+      : sites_(sites), numbers_(numbers), targets_(targets), request_(request), seed_(seed) {}
+
+  [[nodiscard]] LinkBlock make(const GatheredRays& gathered) const {
+    const std::size_t words = (request_.rays + 63) / 64;
+    LinkBlock block;
+    block.hits.assign(gathered.sites.size() * words, 0);
+    block.sites.reserve(gathered.sites.size());
+    block.begins.reserve(gathered.sites.size() + 1);
+    for (std::size_t s = 0; s < gathered.sites.size(); ++s) {
+      const std::uint32_t site = numbers_.empty() ? gathered.sites[s] : numbers_[gathered.sites[s]];
+      block.sites.push_back(site);
+      block.begins.push_back(std::uint32_t(block.targets.size()));
+      if (sites_.normals[site] != Vec3f(0.0f)) add_site(gathered, s, site, &block.hits[s * words], block.targets);
+    }
+    block.begins.push_back(std::uint32_t(block.targets.size()));
+    block.targets.shrink_to_fit();
+    return block;
+  }
+
+ private:
+  void add_site(const GatheredRays& gathered, std::size_t place, std::uint32_t site, std::uint64_t* hits,
+                std::vector<std::uint32_t>& targets) const {
+    const LinkTargets::Draws draws = LinkTargets::draws_of(seed_, site);
+    const Vec3 origin(sites_.positions[site]);
+    for (std::size_t k = 0; k < request_.rays; ++k) {
+      const std::size_t i = place * request_.rays + k;
+      if (gathered.escaped(i)) continue;
+      hits[k / 64] |= std::uint64_t(1) << k % 64;
+      if (request_.question == RayQuestion::kAnyHit) continue;
+      const Vec3 direction(gathered.index_direction[0][i], gathered.index_direction[1][i],
+                           gathered.index_direction[2][i]);
+      targets.push_back(targets_.target(origin + double(gathered.index_distance[i]) * direction, draws,
+                                        std::uint32_t(request_.first + k)));
+    }
+  }
+
+  const Sites& sites_;
+  std::span<const std::uint32_t> numbers_;
+  const LinkTargets& targets_;
+  const RoundRequest& request_;
+  std::uint64_t seed_;
+};
+
+}  // namespace
+
+LinkRound trace_round(const Volume& volume, const Sites& sites, std::span<const std::uint32_t> numbers,
+                      const LinkTargets& targets, const RoundRequest& request, const Run& run,
+                      TraceCounters& counters) {
+  LinkRound round{.first = request.first, .rays = request.rays, .blocks = {}};
+  const GatherSettings settings{.rays = int(request.rays),
+                                .outer = request.outer,
+                                .question = request.question,
+                                .first_ray = int(request.first),
+                                .keys = numbers};
+  Sites some;
+  for (const std::uint32_t site : numbers) {
+    some.positions.push_back(sites.positions[site]);
+    some.isovalues.push_back(sites.isovalues[site]);
+    some.normals.push_back(sites.normals[site]);
+  }
+  const BlockMaker maker(sites, numbers, targets, request, run.seed);
+  std::mutex adding;
+  add(counters, gather(volume, numbers.empty() ? sites : some, settings, run, [&](const GatheredRays& gathered) {
+        LinkBlock block = maker.make(gathered);
+        const std::scoped_lock lock(adding);
+        round.blocks.push_back(std::move(block));
+      }));
+  return round;
+}
+
+void add_targets(const LinkRound& round, int channels, std::span<const float> light, std::span<float> sums,
+                 const Run& run) {
+  parallel_blocks(round.blocks.size(), kBlocksATask, run, "", [&](const Block& task) {
+    for (std::size_t b = task.begin; b < task.end; ++b) {
+      if (channels == 1) {
+        add_block<1>(round.blocks[b], light, sums);
+      } else {
+        add_block<3>(round.blocks[b], light, sums);
+      }
+    }
+  });
+}
+
+}  // namespace isolux
