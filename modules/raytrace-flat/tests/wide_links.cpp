@@ -3,6 +3,10 @@
 #include <isolux/core/error.h>
 #include <isolux/raytrace_flat/light_links.h>
 
+#include <algorithm>
+#include <numeric>
+
+#include "link_targets.h"
 #include "physics_support.h"
 
 namespace isolux::test {
@@ -146,6 +150,73 @@ TEST(LightLinks, GiveTheSameBitsForAnyNumberOfThreads) {
   const SampleSet three = e(3);
   EXPECT_EQ(one.radiance, three.radiance);
   EXPECT_EQ(one.variance, three.variance);
+}
+
+TEST(LightLinks, GoOnWithTheirSequences) {
+  const Volume volume = gyroid(17);
+  std::vector<std::size_t> texel;
+  const Sites sites = cell_sites(volume, OuterSide::kLower, texel);
+  for (const LinkEnds ends : {LinkEnds::kKept, LinkEnds::kDropped}) {
+    LightLinks doubled(volume, sites, {.rays = 16, .ends = ends}, isolux::Run{});
+    std::vector<std::uint32_t> odd;
+    for (std::uint32_t i = 1; i < sites.size(); i += 2) odd.push_back(i);
+    doubled.extend(odd, isolux::Run{});
+    const LightLinks few(volume, sites, {.rays = 16, .ends = ends}, isolux::Run{});
+    const LightLinks many(volume, sites, {.rays = 32, .ends = ends}, isolux::Run{});
+    const auto e = [](const LightLinks& links) {
+      return links.direct(furnace(0.8f), {}, isolux::Run{}).samples.radiance;
+    };
+    const auto mixed = e(doubled);
+    // Counts of rays that escape, over powers of two: exact.
+    const auto coarse = e(few);
+    const auto fine = e(many);
+    for (std::size_t i = 0; i < sites.size(); ++i) EXPECT_EQ(mixed[i], (i % 2 == 0 ? coarse : fine)[i]);
+    EXPECT_EQ(doubled.rays()[0], 16u);
+    EXPECT_EQ(doubled.rays()[1], 32u);
+  }
+}
+
+TEST(LightLinks, DrawTexelsByTheirTrilinearWeights) {
+  const Volume volume = gyroid(9);
+  std::vector<std::size_t> texel;
+  const Sites sites = cell_sites(volume, OuterSide::kLower, texel);
+  const Lattice texels = cell_lattice(volume.lattice());
+  const LinkTargets targets(volume, sites, texels, isolux::Run{});
+  ASSERT_TRUE(targets.are_sites());
+  RandomStream random(3, 0);
+  IlluminationGrid grid(texels, 1);
+  std::vector<float> light(sites.size());
+  for (std::size_t i = 0; i < sites.size(); ++i) grid.values[texel[i]] = light[i] = random.uniform_float();
+  for (int place = 0; place < 20; ++place) {
+    const Vec3 index = 1.0 + 6.0 * Vec3(random.uniform_double(), random.uniform_double(), random.uniform_double());
+    double sum = 0.0;
+    constexpr int kDraws = 20000;
+    for (int d = 0; d < kDraws; ++d)
+      sum += double(light[targets.target(index, LinkTargets::draws_of(1, std::size_t(d)), 5)]);
+    // A spread of at most .5 leaves .0035 in the mean; four times that.
+    EXPECT_NEAR(sum / kDraws, grid.at_index(index - 0.5).x, 0.014);
+  }
+}
+
+TEST(LightLinks, ReadTheNearestLitTexelWhereNoneIs) {
+  const Volume volume = gyroid(9);
+  std::vector<std::size_t> texel;
+  Sites all = cell_sites(volume, OuterSide::kLower, texel);
+  Sites one;
+  one.positions = {Vec3f(2.5f)};
+  one.isovalues = {0.0f};
+  one.normals = {Vec3f(0.0f, 0.0f, 1.0f)};
+  const LinkTargets targets(volume, one, cell_lattice(volume.lattice()), isolux::Run{});
+  ASSERT_TRUE(targets.are_sites());
+  for (const Vec3f& place : all.positions) EXPECT_EQ(targets.target(Vec3(place), {}, 0), 0u);
+}
+
+TEST(LightLinks, RefuseBouncesWithoutEnds) {
+  const Volume volume = gyroid(9);
+  std::vector<std::size_t> texel;
+  const LightLinks links(volume, cell_sites(volume, OuterSide::kLower, texel), {.rays = 4, .ends = LinkEnds::kDropped},
+                         isolux::Run{});
+  EXPECT_THROW((void)links.solve(furnace(0.8f), {}, {}, isolux::Run{}), InvalidInput);
 }
 
 TEST(LightLinks, RefuseAnotherOuterSide) {
