@@ -177,9 +177,10 @@ TEST(LightLinks, GoOnWithTheirSequences) {
 }
 
 TEST(LightLinks, DrawTexelsByTheirTrilinearWeights) {
-  const Volume volume = gyroid(9);
+  const Volume volume = cavity(9);
   std::vector<std::size_t> texel;
   const Sites sites = cell_sites(volume, OuterSide::kLower, texel);
+  ASSERT_EQ(sites.size(), 512u);
   const Lattice texels = cell_lattice(volume.lattice());
   const LinkTargets targets(volume, sites, texels, isolux::Run{});
   ASSERT_TRUE(targets.are_sites());
