@@ -27,8 +27,8 @@ SurfaceBlock build_block(const Volume& volume, const ExtractSettings& settings, 
     }
   }
   SurfaceBlock block = surface.take();
-  std::ranges::sort(block.bottom);
-  std::ranges::sort(block.top);
+  std::ranges::sort(block.bottom, {}, &SharedVertex::edge);
+  std::ranges::sort(block.top, {}, &SharedVertex::edge);
   return block;
 }
 

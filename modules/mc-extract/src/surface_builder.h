@@ -17,7 +17,6 @@ namespace isolux::mc {
 struct SharedVertex {
   std::size_t edge;  ///< number of the grid edge in its plane
   std::uint32_t id;
-  auto operator<=>(const SharedVertex&) const = default;
 };
 
 /// What a block of slabs gives: its part of the mesh, and which of its vertices lie on its first and last plane.
