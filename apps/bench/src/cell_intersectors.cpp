@@ -46,12 +46,18 @@ CellRoot smallest_in_unit(std::array<Real, 3> roots, int count) {
 }
 
 /// The closed form (Schwarze 1990, "Cubic and quartic roots", Graphics Gems), as Parker, Shirley, Livnat, Hansen &
-/// Sloan 1998, "Interactive ray tracing for isosurface rendering", use it.
+/// Sloan 1998, "Interactive ray tracing for isosurface rendering", use it. As in Schwarze's program a coefficient below
+/// kZero, here of the largest one, counts as zero, and the polynomial as one of lower degree.
 template <class Real>
 CellRoot parker(const CellProblem& problem) {
-  const std::array<Real, 4> c = power_cubic<Real>(problem);
-  if (c[3] == 0) {
-    if (c[2] == 0) return c[1] == 0 ? CellRoot() : smallest_in_unit<Real>({-c[0] / c[1], 0, 0}, 1);
+  constexpr Real kZero = sizeof(Real) == sizeof(double) ? Real(1e-9) : Real(1e-5);
+  std::array<Real, 4> c = power_cubic<Real>(problem);
+  Real size = 0;
+  for (const Real v : c) size = std::max(size, std::fabs(v));
+  if (!(size > 0)) return std::nullopt;
+  for (Real& v : c) v /= size;
+  if (std::fabs(c[3]) < kZero) {
+    if (std::fabs(c[2]) < kZero) return std::fabs(c[1]) < kZero ? CellRoot() : smallest_in_unit<Real>({-c[0] / c[1]}, 1);
     const Real p = c[1] / (2 * c[2]);
     const Real d = p * p - c[0] / c[2];
     if (!(d >= 0)) return std::nullopt;
@@ -79,69 +85,136 @@ CellRoot parker(const CellProblem& problem) {
       {t * std::cos(phi) - shift, -t * std::cos(phi + third) - shift, -t * std::cos(phi - third) - shift}, 3);
 }
 
+/// The real roots of c[1] + 2 c[2] s + 3 c[3] s^2 in (0, 1), rising, without subtracting near equals; how many.
+template <class Real>
+int extrema(const std::array<Real, 4>& c, std::array<Real, 2>& places) {
+  const Real a = 3 * c[3];
+  const Real b = 2 * c[2];
+  const Real d = b * b - 4 * a * c[1];
+  if (!(d > 0)) return 0;
+  const Real q = -(b + std::copysign(std::sqrt(d), b)) / 2;
+  int count = 0;
+  for (const Real s : {q / a, c[1] / q}) {
+    if (s > 0 && s < 1) places[unsigned(count++)] = s;  // false for the infinite one of a straight line
+  }
+  if (count == 2 && places[0] > places[1]) std::swap(places[0], places[1]);
+  return count;
+}
+
+constexpr int kInterpolations = 3;
+
+/// Linear interpolation, repeated in the half that keeps the change of sign: f(t0) = f0 and f(t1) = f1 differ in it.
+template <class Real, class Function>
+CellRoot interpolate(const Function& f, Real t0, Real t1, Real f0, Real f1) {
+  for (int i = 0; i < kInterpolations; ++i) {
+    const Real t = t0 + (t1 - t0) * (-f0 / (f1 - f0));
+    const Real value = f(t);
+    if ((value < 0) == (f0 < 0)) {
+      t0 = t;
+      f0 = value;
+    } else {
+      t1 = t;
+      f1 = value;
+    }
+  }
+  return double(t0 + (t1 - t0) * (-f0 / (f1 - f0)));
+}
+
 /// Isolation at the roots of the derivative, then repeated linear interpolation: Marmitt, Kleer, Wald, Friedrich &
 /// Slusallek 2004, "Fast and accurate ray-voxel intersection techniques for iso-surface ray tracing", algorithm 1.
 template <class Real>
 CellRoot marmitt(const CellProblem& problem) {
-  constexpr int kInterpolations = 3;
   const std::array<Real, 4> c = power_cubic<Real>(problem);
   Real t0 = 0;
   Real t1 = 1;
   Real f0 = c[0];
   Real f1 = at(c, Real(1));
-  const Real d = c[2] * c[2] - 3 * c[3] * c[1];
-  if (d > 0) {
-    const Real root = std::sqrt(d);
-    Real e0 = (-c[2] - root) / (3 * c[3]);
-    Real e1 = (-c[2] + root) / (3 * c[3]);
-    if (e0 > e1) std::swap(e0, e1);
-    for (const Real e : {e0, e1}) {
-      if (!(e > t0 && e < t1)) continue;
-      const Real fe = at(c, e);
-      if ((fe < 0) != (f0 < 0)) {
-        t1 = e;
-        f1 = fe;
-        break;
-      }
-      t0 = e;
-      f0 = fe;
+  std::array<Real, 2> places{};
+  const int count = extrema(c, places);
+  for (int i = 0; i < count; ++i) {
+    const Real e = places[unsigned(i)];
+    const Real fe = at(c, e);
+    if ((fe < 0) != (f0 < 0)) {
+      t1 = e;
+      f1 = fe;
+      break;
     }
+    t0 = e;
+    f0 = fe;
   }
   if ((f0 < 0) == (f1 < 0)) return std::nullopt;
-  for (int i = 0; i < kInterpolations; ++i) {
-    const Real t = t0 + (t1 - t0) * (-f0 / (f1 - f0));
-    const Real f = at(c, t);
-    if ((f < 0) == (f0 < 0)) {
-      t0 = t;
-      f0 = f;
-    } else {
-      t1 = t;
-      f1 = f;
+  return interpolate([&c](Real t) { return at(c, t); }, t0, t1, f0, f1);
+}
+
+/// The trilinear interpolant itself, a part s of the way.
+float value_at(const CellProblem& problem, float s) {
+  std::array<float, 3> p{};
+  for (unsigned a = 0; a < 3; ++a) p[a] = float(problem.enter[a]) + s * float(problem.leave[a] - problem.enter[a]);
+  const auto mix = [](float u, float v, float t) { return u + t * (v - u); };
+  const auto& v = problem.corners;
+  return mix(mix(mix(float(v[0]), float(v[1]), p[0]), mix(float(v[2]), float(v[3]), p[0]), p[1]),
+             mix(mix(float(v[4]), float(v[5]), p[0]), mix(float(v[6]), float(v[7]), p[0]), p[1]), p[2]);
+}
+
+/// A change of sign between entry and exit, then repeated linear interpolation: Neubauer, Mroz, Hauser & Wegenkittl
+/// 2002, "Cell-based first-hit ray casting". Two roots in one cell go unseen, as the paper accepts.
+CellRoot neubauer(const CellProblem& problem) {
+  const float f0 = value_at(problem, 0.0f);
+  const float f1 = value_at(problem, 1.0f);
+  if ((f0 < 0) == (f1 < 0)) return std::nullopt;
+  return interpolate([&problem](float t) { return value_at(problem, t); }, 0.0f, 1.0f, f0, f1);
+}
+
+/// Bernstein coefficients halved until they change sign once, the first half first (Lane & Riesenfeld 1981, "Bounds on
+/// a polynomial"), then bisection with secants: each root is bracketed all the time.
+CellRoot subdivided(const std::array<double, 4>& b, double from, double to, int depth) {
+  int changes = 0;
+  for (unsigned i = 1; i < 4; ++i) changes += (b[i] < 0) != (b[i - 1] < 0) ? 1 : 0;
+  if (changes == 0) return std::nullopt;
+  if (changes == 1 || depth == 0) {
+    const double width = to - from;
+    double low = 0.0;
+    double high = 1.0;
+    if ((b[0] < 0) == (b[3] < 0)) return std::nullopt;
+    for (int i = 0; i < 40; ++i) {
+      const double f_low = cubic_at(b, low);
+      const double f_high = cubic_at(b, high);
+      // A secant and a bisection in turn: fast on lines and never slower than halving.
+      const double s = i % 2 == 0 ? low + (high - low) * (f_low / (f_low - f_high)) : 0.5 * (low + high);
+      if (!(s > low && s < high)) break;
+      ((cubic_at(b, s) < 0) == (b[0] < 0) ? low : high) = s;
+      if (high - low < 1e-12) break;
     }
+    return from + width * 0.5 * (low + high);
   }
-  return double(t0 + (t1 - t0) * (-f0 / (f1 - f0)));
+  const double ab = 0.5 * (b[0] + b[1]);
+  const double bc = 0.5 * (b[1] + b[2]);
+  const double cd = 0.5 * (b[2] + b[3]);
+  const double abc = 0.5 * (ab + bc);
+  const double bcd = 0.5 * (bc + cd);
+  const double middle = 0.5 * (abc + bcd);
+  const double half = 0.5 * (from + to);
+  const CellRoot first = subdivided({b[0], ab, abc, middle}, from, half, depth - 1);
+  return first ? first : subdivided({middle, bcd, cd, b[3]}, half, to, depth - 1);
+}
+
+CellRoot lane_riesenfeld(const CellProblem& problem) {
+  constexpr int kHalvings = 20;
+  return subdivided(segment_cubic(problem.corners, problem.enter, problem.leave), 0.0, 1.0, kHalvings);
 }
 
 /// Equal steps until the sign changes, then bisection: what volume renderers do.
 template <int kSteps>
 CellRoot marching(const CellProblem& problem) {
   constexpr int kBisections = 10;
-  const auto value = [&](float s) {
-    std::array<float, 3> p{};
-    for (unsigned a = 0; a < 3; ++a) p[a] = float(problem.enter[a]) + s * float(problem.leave[a] - problem.enter[a]);
-    const auto mix = [](float u, float v, float t) { return u + t * (v - u); };
-    const auto& v = problem.corners;
-    return mix(mix(mix(float(v[0]), float(v[1]), p[0]), mix(float(v[2]), float(v[3]), p[0]), p[1]),
-               mix(mix(float(v[4]), float(v[5]), p[0]), mix(float(v[6]), float(v[7]), p[0]), p[1]), p[2]);
-  };
-  const bool begins_below = value(0.0f) < 0.0f;
+  const bool begins_below = value_at(problem, 0.0f) < 0.0f;
   for (int i = 1; i <= kSteps; ++i) {
     float high = float(i) / kSteps;
-    if ((value(high) < 0.0f) == begins_below) continue;
+    if ((value_at(problem, high) < 0.0f) == begins_below) continue;
     float low = float(i - 1) / kSteps;
     for (int b = 0; b < kBisections; ++b) {
       const float middle = 0.5f * (low + high);
-      ((value(middle) < 0.0f) == begins_below ? low : high) = middle;
+      ((value_at(problem, middle) < 0.0f) == begins_below ? low : high) = middle;
     }
     return double(0.5f * (low + high));
   }
@@ -160,24 +233,6 @@ CellRoot bernstein(const CellProblem& problem) {
 
 using Wide = long double;
 
-/// The roots of a polynomial's derivative in (0, 1) and 1, rising.
-std::vector<Wide> turning_points(const std::array<Wide, 4>& c) {
-  std::vector<Wide> points;
-  const Wide a = 3 * c[3];
-  const Wide b = 2 * c[2];
-  const Wide d = b * b - 4 * a * c[1];
-  if (d >= 0) {
-    // The stable pair of a quadratic's roots: no subtraction of near equals.
-    const Wide q = -(b + std::copysign(std::sqrt(d), b)) / 2;
-    if (a != 0) points.push_back(q / a);
-    if (q != 0) points.push_back(c[1] / q);
-  }
-  std::erase_if(points, [](Wide s) { return !(s > 0 && s < 1); });
-  points.push_back(1);
-  std::sort(points.begin(), points.end());
-  return points;
-}
-
 }  // namespace
 
 CellVerdict cell_oracle(const CellProblem& problem) {
@@ -191,7 +246,11 @@ CellVerdict cell_oracle(const CellProblem& problem) {
     for (Wide& x : c) x = -x;
   }
   Wide low = 0;
-  for (const Wide high : turning_points(c)) {
+  std::array<Wide, 2> places{};
+  const int count = extrema(c, places);
+  std::vector<Wide> ends(places.begin(), places.begin() + count);
+  ends.push_back(1);
+  for (const Wide high : ends) {
     const Wide value = at(c, high);
     if (std::fabs(value) <= noise) return {};
     if (value > 0) {
@@ -209,9 +268,14 @@ CellVerdict cell_oracle(const CellProblem& problem) {
 
 const std::vector<CellIntersector>& cell_intersectors() {
   static const std::vector<CellIntersector> all{
-      {"isolux (Bernstein, bracketed)", bernstein},  {"Parker 1998, double", parker<double>},
-      {"Parker 1998, float", parker<float>},         {"Marmitt 2004, double", marmitt<double>},
-      {"Marmitt 2004, float", marmitt<float>},       {"4 steps + bisection, float", marching<4>},
+      {"isolux (Bernstein, deflated, bracketed)", bernstein},
+      {"Lane & Riesenfeld 1981 (Bernstein)", lane_riesenfeld},
+      {"Parker 1998, double", parker<double>},
+      {"Parker 1998, float", parker<float>},
+      {"Marmitt 2004, double", marmitt<double>},
+      {"Marmitt 2004, float", marmitt<float>},
+      {"Neubauer 2002, float", neubauer},
+      {"4 steps + bisection, float", marching<4>},
       {"16 steps + bisection, float", marching<16>},
   };
   return all;

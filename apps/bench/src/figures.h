@@ -15,11 +15,16 @@ struct PlotPoint {
   double y = 0.0;
   double low = kNone;
   double high = kNone;
+  double left = kNone;  ///< the same along x
+  double right = kNone;
 };
+
+enum class Stroke { kLine, kMarks };
 
 struct Series {
   std::string name;
-  std::vector<PlotPoint> points;
+  std::vector<PlotPoint> points{};
+  Stroke stroke = Stroke::kLine;  ///< kMarks where points are no steps of one thing
 };
 
 enum class Axis { kLog, kLinear };
@@ -50,7 +55,8 @@ struct Table {
 /// What a suite found, in reading order.
 struct SuiteReport {
   std::vector<std::variant<Table, Plot>> figures;
-  std::vector<std::string> failures;  ///< claims that did not hold; empty if all is well
+  std::vector<std::string> failures{};    ///< claims that did not hold; empty if all is well
+  std::vector<std::string> highlights{};  ///< what to know of it, a sentence each, figures included
 };
 
 /// A number as the report prints it: four significant digits; an empty text for kNone.

@@ -1,4 +1,5 @@
 #include <fmt/format.h>
+#include <isolux/bake/version.h>
 #include <isolux/core/parallel.h>
 #include <sys/utsname.h>
 #include <unistd.h>
@@ -44,8 +45,10 @@ std::string machine_description(const SuiteContext& context) {
   std::tm day{};
   gmtime_r(&now, &day);
   std::string text = "| machine | |\n| --- | --- |\n";
+  text += fmt::format("| isolux | {} |\n", kVersion);
   text += fmt::format("| processor | {}, {} logical processors,{} |\n", cpu_info("model name"), thread_count({}),
                       vector_extensions());
+  text += fmt::format("| load of the machine when the suites began | {:.2f} |\n", context.load_before);
   text += fmt::format("| memory | {:.1f} GiB |\n", gib);
   text += fmt::format("| system | {} {} {} |\n", system.sysname, system.release, system.machine);
   text += fmt::format("| compiler | {} {}, flags `{}` |\n", ISOLUX_BENCH_COMPILER, __VERSION__, ISOLUX_BENCH_FLAGS);

@@ -8,10 +8,12 @@
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
+#include <fstream>
 #include <string>
-#include <thread>
+#include <utility>
 #include <vector>
 
+#include "faults.h"
 #include "report.h"
 #include "suite.h"
 
@@ -23,8 +25,8 @@ using namespace isolux::bench;
 struct Arguments {
   std::vector<std::string> names;
   std::string folder = "bench";
-  bool quick = false;
-  bool full = false;
+  Effort effort = Effort::kQuick;
+  std::string fault;
   int threads = 0;
   std::uint64_t seed = 1;
 };
@@ -41,8 +43,13 @@ int parse(int argc, char** argv, Arguments& arguments) {
   app.footer(footer + "Real volumes are taken from the folder that the environment variable ISOLUX_DATA names.");
   app.add_option("SUITE", arguments.names, "suites to run")->check(CLI::IsMember(known));
   app.add_option("-o,--output", arguments.folder, "folder for the results")->type_name("DIR")->capture_default_str();
-  auto* quick = app.add_flag("--quick", arguments.quick, "under a minute a suite on two cores (default)");
-  app.add_flag("--full", arguments.full, "all sizes")->excludes(quick);
+  app.add_flag("--quick{1},--full{2},--smoke{0}", arguments.effort,
+               "under a minute a suite on two cores (default); all sizes, some twenty minutes in all; seconds in all, to "
+               "see that everything runs");
+  std::vector<std::string> ills;
+  for (const Fault& fault : faults()) ills.emplace_back(fault.name);
+  app.add_option("--inject", arguments.fault, "judge a tracer that is wrong or slow on purpose, as if it were the default")
+      ->check(CLI::IsMember(ills));
   app.add_option("--threads", arguments.threads, "threads, 0 for all")->check(CLI::Range(0, 4096));
   app.add_option("--seed", arguments.seed, "seed of every random number")->capture_default_str();
   try {
@@ -59,17 +66,20 @@ int parse(int argc, char** argv, Arguments& arguments) {
 
 /// 1 if a claim of a suite did not hold.
 int run_suites(const Arguments& arguments) {
-  SuiteContext context{.full = arguments.full,
+  SuiteContext context{.effort = arguments.effort,
                        .run = {.seed = arguments.seed, .threads = arguments.threads},
                        .stages = builtin_stages(),
                        .data_folder = {},
                        .say = [](std::string_view text) { fmt::print(stderr, "    {}\n", text); }};
   if (const char* folder = std::getenv("ISOLUX_DATA"); folder != nullptr) context.data_folder = folder;
+  if (!arguments.fault.empty()) context.stages = with_fault(std::move(context.stages), arguments.fault);
+  std::ifstream("/proc/loadavg") >> context.load_before;
   int status = 0;
   for (const Suite& suite : suites()) {
     const auto& names = arguments.names;
     if (!names.empty() && std::find(names.begin(), names.end(), suite.name) == names.end()) continue;
     fmt::print(stderr, "{}: {}\n", suite.name, suite.help);
+    context.budget = budget_of(suite, context.effort);
     const Stopwatch watch;
     const SuiteReport report = suite.run(context);
     write_suite(arguments.folder, suite, report, context, watch.seconds());

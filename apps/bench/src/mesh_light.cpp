@@ -26,8 +26,8 @@ Vec3f cosine_direction(const Vec3f& n, RandomStream& random) {
 
 }  // namespace
 
-std::vector<float> light_vertices(const EmbreeMesh& embree, const IsoMesh& mesh, std::size_t count, int rays,
-                                  const Run& run) {
+std::vector<float> light_vertices(const EmbreeMesh& embree, EmbreeCall call, const IsoMesh& mesh, std::size_t count,
+                                  int rays, const Run& run) {
   float size = 0.0f;
   for (const auto vertex : mesh.vertices()) {
     for (int a = 0; a < 3; ++a) size = std::max(size, std::fabs(mesh.point(vertex)[unsigned(a)]));
@@ -49,7 +49,7 @@ std::vector<float> light_vertices(const EmbreeMesh& embree, const IsoMesh& mesh,
         directions[r] = cosine_direction(normal, random);
         origins[r] = Vec3f(p[0], p[1], p[2]) + offset * normal;
       }
-      embree.occluded(origins, directions, offset, hits);
+      embree.occluded(call, origins, directions, offset, hits);
       int open = 0;
       for (const std::uint8_t hit : hits) open += hit == 0 ? 1 : 0;
       light[i] = float(open) / float(rays);

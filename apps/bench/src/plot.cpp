@@ -160,6 +160,9 @@ std::string axes(const Plot& plot, const Frame& frame) {
   return out;
 }
 
+/// Past the palette's end curves are dashed, so that no two look alike.
+std::string_view dashes(std::size_t number) { return number < kColours.size() ? "" : " stroke-dasharray='6 3'"; }
+
 std::string curve(const Plot& plot, const Frame& frame, const Series& series, std::size_t number) {
   const std::string_view colour = kColours[number % kColours.size()];
   std::string line;
@@ -168,14 +171,20 @@ std::string curve(const Plot& plot, const Frame& frame, const Series& series, st
     if (!shown(p.x, plot.x_axis) || !shown(p.y, plot.y_axis)) continue;
     const double x = frame.x.pixel(p.x);
     const double y = frame.y.pixel(p.y);
-    line += fmt::format("{}{:.1f} {:.1f}", line.empty() ? "M" : "L", x, y);
+    if (series.stroke == Stroke::kLine) line += fmt::format("{}{:.1f} {:.1f}", line.empty() ? "M" : "L", x, y);
+    if (std::isfinite(p.left) && std::isfinite(p.right)) {
+      marks += fmt::format("<path d='M{:.1f} {:.1f}H{:.1f}' stroke='{}' fill='none'/>\n", frame.x.clamped_pixel(p.left), y,
+                           frame.x.clamped_pixel(p.right), colour);
+    }
     if (std::isfinite(p.low) && std::isfinite(p.high)) {
       marks += fmt::format("<path d='M{0:.1f} {1:.1f}V{2:.1f}m-3 0h6M{3:.1f} {1:.1f}h6' stroke='{4}' fill='none'/>\n",
                            x, frame.y.clamped_pixel(p.low), frame.y.clamped_pixel(p.high), x - 3, colour);
     }
     marks += mark(number, x, y, colour);
   }
-  return fmt::format("<path d='{}' fill='none' stroke='{}' stroke-width='1.6'/>\n{}", line, colour, marks);
+  if (line.empty()) return marks;
+  return fmt::format("<path d='{}' fill='none' stroke='{}' stroke-width='1.6'{}/>\n{}", line, colour,
+                     dashes(number), marks);
 }
 
 }  // namespace

@@ -90,6 +90,29 @@ std::string markdown(const Table& table) {
   return text;
 }
 
+/// Figures of an earlier run, of which this one may have others.
+void remove_figures(const fs::path& folder, const Suite& suite) {
+  const std::string stem = fmt::format("{}-", suite.name);
+  std::vector<fs::path> old;
+  for (const auto& entry : fs::directory_iterator(folder)) {
+    const std::string name = entry.path().filename().string();
+    const std::string extension = entry.path().extension().string();
+    if (name.rfind(stem, 0) == 0 && (extension == ".csv" || extension == ".svg")) old.push_back(entry.path());
+  }
+  for (const fs::path& path : old) fs::remove(path);
+}
+
+/// Title, verdict and highlights of a suite that has run, from its JSON file; "" if it has not.
+std::string summary(const fs::path& folder, const Suite& suite) {
+  std::ifstream file(folder / fmt::format("{}.json", suite.name), std::ios::binary);
+  if (!file) return {};
+  const nlohmann::json all = nlohmann::json::parse(file);
+  std::string text = fmt::format("- **{}**", suite.title);
+  if (!all.at("failures").empty()) text += fmt::format(" ({} FAILED)", all.at("failures").size());
+  for (const auto& sentence : all.at("highlights")) text += "\n  - " + sentence.get<std::string>();
+  return text + "\n";
+}
+
 }  // namespace
 
 std::string number_text(double value) {
@@ -101,15 +124,17 @@ std::string number_text(double value) {
 void write_suite(const fs::path& folder, const Suite& suite, const SuiteReport& report, const SuiteContext& context,
                  double seconds) {
   fs::create_directories(folder);
+  remove_figures(folder, suite);
   nlohmann::json all{{"suite", std::string(suite.name)},
-                     {"mode", context.full ? "full" : "quick"},
+                     {"effort", std::string(effort_name(context.effort))},
                      {"seed", context.run.seed},
                      {"threads", thread_count(context.run)},
                      {"seconds", seconds},
                      {"failures", report.failures},
+                     {"highlights", report.highlights},
                      {"figures", nlohmann::json::array()}};
-  std::string text = fmt::format("## {}\n\n{}. {} mode, {} s.\n\n", suite.title, suite.help,
-                                 context.full ? "Full" : "Quick", number_text(std::round(seconds)));
+  std::string text = fmt::format("## {}\n\n{}. Suite `{}`, {} run of {:.0f} s.\n\n", suite.title, suite.help, suite.name,
+                                 effort_name(context.effort), seconds);
   for (const std::string& failure : report.failures) text += fmt::format("**Failed:** {}\n\n", failure);
   for (const auto& figure : report.figures) {
     const auto* plot = std::get_if<Plot>(&figure);
@@ -132,10 +157,11 @@ void write_suite(const fs::path& folder, const Suite& suite, const SuiteReport& 
 
 void write_report(const fs::path& folder, const SuiteContext& context) {
   std::string text =
-      "# Run time against error\n\nWritten by `isolux bench`. Every picture is drawn from the CSV file of its name; "
-      "every "
-      "suite's figures are in its JSON file.\n\n";
-  text += machine_description(context) + "\n";
+      "# Run time against error\n\nWritten by `isolux bench`, figures and sentences alike. Every picture is drawn from "
+      "the CSV file of its name; all figures of a suite are in its JSON file.\n\n";
+  text += machine_description(context) + "\n## In brief\n\n";
+  for (const Suite& suite : suites()) text += summary(folder, suite);
+  text += "\n";
   for (const Suite& suite : suites()) {
     std::ifstream file(folder / fmt::format("{}.md", suite.name), std::ios::binary);
     if (file) text.append(std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>());

@@ -1,27 +1,41 @@
 #include "resample_error.h"
 
-#include <isolux/core/stopwatch.h>
+#include <isolux/resample/fill_unlit.h>
+#include <isolux/resample/light_reader.h>
 
 namespace isolux::bench {
 
-ResamplingResult resampling_error(const Truth& truth, const Volume& volume, const SampleSet& samples,
+ProbePoints probe_points(const Truth& truth, const Volume& volume, std::size_t count, const SuiteContext& context) {
+  const double near = 1.5 / double(volume.lattice().size.x - 1);
+  const Sites sites = known_sites(truth, volume, "random", count, context);
+  ProbePoints points;
+  for (const Vec3f& p : sites.positions) {
+    const Vec3 world = volume.lattice().frame.world(Vec3(p));
+    points.index.push_back(p);
+    points.e.push_back(truth.light(world));
+    points.near_edge.push_back(truth.edge && truth.edge(world) < near ? 1 : 0);
+  }
+  return points;
+}
+
+ResamplingResult resampling_error(const ProbePoints& points, const Volume& volume, const SampleSet& samples,
                                   const Resampler& resampler, const SuiteContext& context) {
   const Lattice texels = cell_lattice(volume.lattice());
-  const Stopwatch watch;
-  const ResampledGrid result = resampler.resample(volume, samples, texels, context.run);
-  ResamplingResult found{.error = {}, .seconds = watch.seconds()};
-  std::vector<double> errors;
-  for (int k = 0; k < texels.size.z; ++k) {
-    for (int j = 0; j < texels.size.y; ++j) {
-      for (int i = 0; i < texels.size.x; ++i) {
-        const auto exact = truth.e(texels.frame.world(Vec3(i, j, k)));
-        const std::size_t t = texels.offset(i, j, k);
-        if (exact && result.lit[t] != 0) errors.push_back(double(result.grid.values[t]) - *exact);
-      }
-    }
+  ResampledGrid partial;
+  ResamplingResult found;
+  found.seconds = timed([&] { partial = resampler.resample(volume, samples, texels, context.run); }, 3, 0.3);
+  const IlluminationGrid light = fill_unlit(std::move(partial), context.run);
+  const LightReader reader(volume, light);
+  std::vector<double> all;
+  std::vector<double> edge;
+  std::vector<double> smooth;
+  for (std::size_t i = 0; i < points.index.size(); ++i) {
+    all.push_back(double(reader.at_index(Vec3(points.index[i])).x) - points.e[i]);
+    (points.near_edge[i] != 0 ? edge : smooth).push_back(all.back());
   }
-  found.texels = errors.size();
-  found.error = rms_interval(errors, context.run.seed);
+  found.error = rms_interval(all, context.run.seed);
+  found.edge = rms_interval(edge, context.run.seed);
+  found.smooth = rms_interval(smooth, context.run.seed);
   return found;
 }
 

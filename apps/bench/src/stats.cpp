@@ -4,8 +4,10 @@
 #include <isolux/core/stopwatch.h>
 
 #include <algorithm>
+#include <array>
 #include <cassert>
 #include <cmath>
+#include <limits>
 
 namespace isolux::bench {
 
@@ -51,6 +53,16 @@ Estimate rms_interval(std::span<const double> errors, std::uint64_t seed) {
   return {.value = rms(errors), .low = quantile(resampled, 0.025), .high = quantile(resampled, 0.975)};
 }
 
+namespace {
+
+/// The 97.5 % quantile of Student's t.
+double student_95(std::size_t degrees) {
+  constexpr std::array<double, 10> kQuantiles{12.706, 4.303, 3.182, 2.776, 2.571, 2.447, 2.365, 2.306, 2.262, 2.228};
+  return degrees <= kQuantiles.size() ? kQuantiles[degrees - 1] : 1.96 + 2.5 / double(degrees);
+}
+
+}  // namespace
+
 PowerLaw fit_power_law(std::span<const double> x, std::span<const double> y) {
   assert(x.size() == y.size() && x.size() >= 2);
   const auto n = double(x.size());
@@ -76,8 +88,21 @@ PowerLaw fit_power_law(std::span<const double> x, std::span<const double> y) {
       residual += d * d;
     }
     law.exponent_error = std::sqrt(residual / (n - 2.0) / xx);
+    law.exponent_bar = student_95(x.size() - 2) * law.exponent_error;
+  } else {
+    law.exponent_bar = std::numeric_limits<double>::infinity();
   }
   return law;
+}
+
+PowerLaw fit_power_law(std::span<const PlotPoint> points) {
+  std::vector<double> x;
+  std::vector<double> y;
+  for (const PlotPoint& p : points) {
+    x.push_back(p.x);
+    y.push_back(p.y);
+  }
+  return fit_power_law(x, y);
 }
 
 Estimate timed(const std::function<void()>& body, int repetitions, double budget_seconds) {

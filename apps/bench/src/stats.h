@@ -5,6 +5,8 @@
 #include <span>
 #include <vector>
 
+#include "figures.h"
+
 namespace isolux::bench {
 
 /// A value and the ends of its interval.
@@ -29,9 +31,11 @@ struct PowerLaw {
   double factor = 0.0;
   double exponent = 0.0;
   double exponent_error = 0.0;  ///< standard error of the exponent; 0 for two points
+  double exponent_bar = 0.0;    ///< half the 95 % interval of the exponent by Student's t; infinite for two points
 };
 /// Least squares in logarithms. \pre at least two points, all positive
 [[nodiscard]] PowerLaw fit_power_law(std::span<const double> x, std::span<const double> y);
+[[nodiscard]] PowerLaw fit_power_law(std::span<const PlotPoint> points);
 
 /// Seconds of `body`, repeated until `repetitions` are done or `budget_seconds` are spent, at least once: median and
 /// quartiles.

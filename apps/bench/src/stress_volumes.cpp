@@ -38,6 +38,8 @@ Volume closed_noise(int n, std::uint64_t seed) {
   });
 }
 
+ValueRange open_gyroid() { return {.low = -1.2f, .high = 1.6f}; }
+
 std::vector<Volume> nasty_volumes() {
   const Volume gyroid = sample_analytic_field("gyroid", 17);
   std::vector<Volume> volumes;

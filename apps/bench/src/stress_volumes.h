@@ -15,6 +15,10 @@ namespace isolux::bench {
 /// is closed.
 [[nodiscard]] Volume closed_noise(int n, std::uint64_t seed);
 
+/// The level sets of gen:gyroid whose side of lower values is one piece, open to the box's faces from everywhere: light
+/// gets in at all of their points. Further down that side falls apart into pockets, dark by definition.
+[[nodiscard]] ValueRange open_gyroid();
+
 /// Volumes whose values or frames invite overflow, underflow and lost digits.
 [[nodiscard]] std::vector<Volume> nasty_volumes();
 

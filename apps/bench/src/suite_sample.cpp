@@ -1,7 +1,7 @@
 #include <fmt/format.h>
-#include <isolux/core/stopwatch.h>
 #include <isolux/volume_io/analytic_fields.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "resample_error.h"
@@ -15,75 +15,69 @@ const std::vector<std::string> kScatterers{"random", "stratified", "low_discrepa
 struct Rates {
   Table table{.id = "rates",
               .title = "Fitted rates",
-              .columns = {"scene", "sampler", "of", "error falls as", "standard error of the exponent"},
-              .sentence =
-                  "Exponents by least squares in logarithms over all points of a curve; chance alone gives -1/2 in "
-                  "rays, and an interpolant of first order -1/3 in sites."};
-  void add(const std::string& scene, const std::string& sampler, const std::string& what,
-           const std::vector<PlotPoint>& points) {
-    std::vector<double> x;
-    std::vector<double> y;
-    for (const PlotPoint& p : points) {
-      x.push_back(p.x);
-      y.push_back(p.y);
-    }
-    if (x.size() < 3) return;
-    const PowerLaw law = fit_power_law(x, y);
-    table.rows.push_back({scene, sampler, what, fmt::format("{}^{:.2f}", what, law.exponent),
-                          fmt::format("{:.2f}", law.exponent_error)});
+              .columns = {"scene", "sampler or tracer", "points", "error falls as", "+- (95 %)"}};
+  void add(const std::string& scene, const Series& series, const std::string& what) {
+    if (series.points.size() < 3) return;
+    const PowerLaw law = fit_power_law(series.points);
+    table.rows.push_back({scene, series.name, double(series.points.size()), fmt::format("{}^{:.2f}", what, law.exponent),
+                          fmt::format("{:.2f}", law.exponent_bar)});
   }
 };
 
-/// Error of the light at texels against the number of sites, e exact at the sites.
-Plot error_against_sites(const Truth& truth, const Volume& volume, const SuiteContext& context, Rates& rates) {
-  Plot plot{.id = "sites-" + truth.field,
+/// Error of the light at points against the number of sites, e exact at the sites.
+Plot error_against_sites(const Truth& truth, const Volume& volume, const SuiteContext& context, double seconds,
+                         Rates& rates) {
+  Plot plot{.id = "sites-" + truth.name,
             .title = fmt::format("Error against sites: {}", truth.name),
             .x_label = "sites",
-            .y_label = "rms error of e at texels"};
+            .y_label = "rms error of e at points"};
   plot.sentence =
-      "What scattering alone costs: e is exact at the sites and carried to the texels by Shepard's interpolation (k = "
-      "11, "
-      "p = 2); bars are 95 % bootstrap intervals over texels.";
-  const std::vector<double> counts =
-      context.full ? std::vector<double>{1e3, 3e3, 1e4, 3e4, 1e5, 3e5, 1e6} : std::vector<double>{1e3, 3e3, 1e4, 3e4};
+      "What scattering alone costs: e is exact at the sites, carried to the texels by Shepard's interpolation (k = 11, "
+      "p = 2) and read at random points; bars are 95 % bootstrap intervals.";
+  std::replace(plot.id.begin(), plot.id.end(), ' ', '-');
   const auto shepard = context.stages.resamplers.create("cell_grid", {{"k", "11"}, {"exponent", "2"}});
-  for (const std::string& sampler : kScatterers) {
-    Series series{.name = sampler, .points = {}};
-    for (const double count : counts) {
-      const Sites sites = all_sites(volume, sampler, std::size_t(count), context);
+  const ProbePoints points = probe_points(truth, volume, std::size_t(context.pick(1000, 5000, 20000)), context);
+  for (const std::string& sampler : kScatterers) plot.series.push_back({.name = sampler});
+  Climb climb(seconds, 3.0);
+  for (double count = 1e3; count <= context.pick(1e4, 1e5, 2e6) && climb.goes_on(); count *= std::sqrt(10.0)) {
+    for (Series& series : plot.series) {
+      const Sites sites = all_sites(volume, series.name, std::size_t(count), context);
       const SampleSet samples = exact_samples(truth, volume, sites, 0.0, context.run.seed);
-      const Estimate error = resampling_error(truth, volume, samples, *shepard, context).error;
+      const Estimate error = resampling_error(points, volume, samples, *shepard, context).error;
       series.points.push_back({double(samples.size()), error.value, error.low, error.high});
     }
-    rates.add(truth.name, sampler, "sites", series.points);
-    plot.series.push_back(std::move(series));
   }
+  for (const Series& series : plot.series) rates.add(truth.name, series, "sites");
   return plot;
 }
 
 /// Error of e at the sites against the rays of each.
-Plot error_against_rays(const Truth& truth, const Volume& volume, const SuiteContext& context, Rates& rates) {
-  Plot plot{.id = "rays-" + truth.field,
+Plot error_against_rays(const Truth& truth, const Volume& volume, const SuiteContext& context, double seconds,
+                        Rates& rates) {
+  Plot plot{.id = "rays-" + truth.name,
             .title = fmt::format("Error against rays: {}", truth.name),
             .x_label = "rays a site",
             .y_label = "rms error of e at the sites"};
   plot.sentence =
       "What rays alone cost, at the sites themselves; a curve that stops falling has reached the distance between the "
-      "sampled field and the analytic one.";
-  const auto sites = known_sites(truth, volume, "low_discrepancy", context.pick(1000, 8000), context);
+      "sampled field and the analytic one; bars are 95 % bootstrap intervals.";
+  std::replace(plot.id.begin(), plot.id.end(), ' ', '-');
+  const auto sites = known_sites(truth, volume, "low_discrepancy", context.pick(200, 1000, 4000), context);
+  std::vector<std::string> names;
   for (const BackendInfo& info : context.stages.tracers.backends()) {
-    if (!info.unavailable.empty()) continue;
-    const auto tracer = context.stages.tracers.create(info.name);
-    Series series{.name = info.name, .points = {}};
-    std::vector<PlotPoint> falling;
-    for (int rays = 4; rays <= context.pick(256, 4096); rays *= 4) {
+    if (info.unavailable.empty()) names.push_back(info.name);
+  }
+  for (const std::string& name : names) {
+    const auto tracer = context.stages.tracers.create(name);
+    Series series{.name = name};
+    Climb climb(seconds / double(names.size()), 4.0);
+    for (int rays = 4; rays <= context.pick(64, 1024, 16384) && climb.goes_on(); rays *= 4) {
       const TraceResult traced =
           tracer->trace(volume, truth.scene, sites, {.rays = rays, .bounces = truth.bounces}, context.run);
-      const auto errors = errors_at_sites(truth, volume, traced.samples);
-      const Estimate error = rms_interval(errors, context.run.seed);
+      const Estimate error = rms_interval(errors_at_sites(truth, volume, traced.samples), context.run.seed);
       series.points.push_back({double(rays), error.value, error.low, error.high});
     }
-    rates.add(truth.name, info.name, "rays", series.points);
+    rates.add(truth.name, series, "rays");
     plot.series.push_back(std::move(series));
   }
   return plot;
@@ -96,7 +90,7 @@ Table site_speed(const SuiteContext& context) {
               .sentence =
                   "Median of three runs on gen:gyroid; the last column asks for the same number of sites within a "
                   "tenth of the isovalues."};
-  const Volume volume = sample_analytic_field("gyroid", context.pick(64, 256));
+  const Volume volume = sample_analytic_field("gyroid", context.pick(17, 64, 192));
   const auto texels = cell_lattice(volume.lattice());
   for (const BackendInfo& info : context.stages.samplers.backends()) {
     const auto sampler = context.stages.samplers.create(info.name);
@@ -109,7 +103,7 @@ Table site_speed(const SuiteContext& context) {
                                         context.run)
                                .size();
                  },
-                 3, 20.0)
+                 3, 2.0)
           .value;
     };
     const double narrow = seconds(ValueRange{.low = 0.0f, .high = 0.3f});
@@ -124,13 +118,18 @@ Table site_speed(const SuiteContext& context) {
 SuiteReport run_sample(const SuiteContext& context) {
   SuiteReport report;
   Rates rates;
-  for (const Truth& truth : {plane_under_ball(), plane_in_the_sun(), integrating_sphere()}) {
+  rates.table.sentence =
+      "Exponents by least squares in logarithms over all points of a curve, +- half their 95 % interval; chance alone "
+      "gives -1/2 in rays, and an interpolant of first order -1/3 in sites.";
+  const std::vector<Truth> truths{plane_under_ball(), plane_in_the_sun(), integrating_sphere()};
+  std::size_t pieces = 6;  // five pictures, and the table of speeds
+  for (const Truth& truth : truths) {
     context.say(truth.name);
-    const Volume volume = sample_analytic_field(truth.field, context.pick(41, 129));
-    report.figures.emplace_back(error_against_sites(truth, volume, context, rates));
-    if (truth.name != plane_in_the_sun().name) {
-      report.figures.emplace_back(error_against_rays(truth, volume, context, rates));
-    }
+    const Volume volume = sample_analytic_field(truth.field, context.pick(17, 41, 129));
+    report.figures.emplace_back(
+        error_against_sites(truth, volume, context, context.budget.share(pieces--), rates));
+    if (truth.edge) continue;  // a sun's shadow has no chance in it: one ray tells
+    report.figures.emplace_back(error_against_rays(truth, volume, context, context.budget.share(pieces--), rates));
   }
   report.figures.emplace_back(std::move(rates.table));
   report.figures.emplace_back(site_speed(context));

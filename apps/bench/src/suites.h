@@ -12,5 +12,6 @@ namespace isolux::bench {
 [[nodiscard]] SuiteReport run_bake(const SuiteContext& context);
 [[nodiscard]] SuiteReport run_thesis(const SuiteContext& context);
 [[nodiscard]] SuiteReport run_stability(const SuiteContext& context);
+[[nodiscard]] SuiteReport run_faults(const SuiteContext& context);
 
 }  // namespace isolux::bench

@@ -35,17 +35,18 @@ Truth plane_in_the_sun() {
   scene.environment = UniformEnvironment{Vec3f(0.0f)};
   scene.lights.emplace_back(SunLight{
       .direction = Vec3f(towards), .irradiance = Vec3f(std::numbers::pi_v<float>), .angular_diameter_deg = 0.0f});
+  // How far the ray towards the sun passes outside the ball of this level set.
+  const auto from_edge = [towards](const Vec3& p) {
+    const Vec3 to_centre = Vec3(0.5) - p;
+    return glm::length(to_centre - glm::dot(to_centre, towards) * towards) - (0.1 + p.z);
+  };
   return {.name = "plane in the sun",
           .field = "ball-over-plane",
           .scene = scene,
           .isovalues = ValueRange{.low = -0.18f, .high = -0.02f},
           .known = is_on_plane,
-          .light = [towards](const Vec3& p) {
-            const Vec3 to_centre = Vec3(0.5) - p;
-            const double along = glm::dot(to_centre, towards);
-            const bool shaded = glm::length(to_centre - along * towards) < 0.1 + p.z;
-            return shaded ? 0.0 : towards.z;
-          }};
+          .light = [from_edge, towards](const Vec3& p) { return from_edge(p) < 0.0 ? 0.0 : towards.z; },
+          .edge = [from_edge](const Vec3& p) { return std::fabs(from_edge(p)); }};
 }
 
 Truth integrating_sphere() {

@@ -21,6 +21,7 @@ struct Truth {
   std::optional<ValueRange> isovalues{};       ///< the level sets for which e is known
   std::function<bool(const Vec3&)> known{};    ///< whether `light` is e at this point of [0,1]^3
   std::function<double(const Vec3&)> light{};  ///< e where it is known, its continuation elsewhere
+  std::function<double(const Vec3&)> edge{};   ///< distance to the nearest jump of e; empty if it has none
 
   [[nodiscard]] std::optional<double> e(const Vec3& p) const {
     return known(p) ? std::optional(light(p)) : std::nullopt;

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <isolux/raytrace_flat/flat_tracer.h>
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "stats.h"
+#include "suite.h"
+
+namespace isolux::bench {
+
+inline constexpr int kSpeedRays = 64;  ///< a site
+
+struct TracerSpeed {
+  Estimate mrays;  ///< million rays a second: median and quartiles
+  TraceCounters counters;
+};
+
+/// A tracer's speed on the ray population of flattened lighting: sites uniform in the volume, cosine rays over their
+/// hemispheres, no bounces. Takes about `seconds`: as many sites as fit, a few repetitions.
+[[nodiscard]] TracerSpeed tracer_speed(const std::string& tracer, const Volume& volume, const Run& run, double seconds,
+                                       const SuiteContext& context);
+
+/// A number of items that takes about `wanted` seconds where `items` took `seconds`.
+[[nodiscard]] std::size_t grown(std::size_t items, double seconds, double wanted);
+
+/// Names of the tracers of this build.
+[[nodiscard]] std::vector<std::string> tracer_names(const SuiteContext& context);
+/// The one that is used unless another is named.
+[[nodiscard]] std::string default_tracer(const SuiteContext& context);
+
+}  // namespace isolux::bench
