@@ -165,28 +165,34 @@ CellRoot neubauer(const CellProblem& problem) {
   return interpolate([&problem](float t) { return value_at(problem, t); }, 0.0f, 1.0f, f0, f1);
 }
 
-/// Bernstein coefficients halved until they change sign once, the first half first (Lane & Riesenfeld 1981, "Bounds on
-/// a polynomial"), then bisection with secants: each root is bracketed all the time.
+/// The one root between 0 and 1 by Newton's steps, halving where they leave the bracket.
+double bracketed_newton(const std::array<double, 4>& b) {
+  constexpr int kMostSteps = 60;
+  constexpr double kEnough = 1e-12;
+  double low = 0.0;
+  double high = 1.0;
+  double s = b[0] / (b[0] - b[3]);
+  for (int i = 0; i < kMostSteps; ++i) {
+    const double f = cubic_at(b, s);
+    ((f < 0) == (b[0] < 0) ? low : high) = s;
+    const double r = 1.0 - s;
+    const double slope = 3.0 * (r * r * (b[1] - b[0]) + 2.0 * r * s * (b[2] - b[1]) + s * s * (b[3] - b[2]));
+    double next = s - f / slope;
+    if (!(next > low && next < high)) next = 0.5 * (low + high);
+    if (std::fabs(next - s) < kEnough) return next;
+    s = next;
+  }
+  return s;
+}
+
+/// Bernstein coefficients halved until they change sign once, the first half first: Lane & Riesenfeld 1981, "Bounds on
+/// a polynomial".
 CellRoot subdivided(const std::array<double, 4>& b, double from, double to, int depth) {
   int changes = 0;
   for (unsigned i = 1; i < 4; ++i) changes += (b[i] < 0) != (b[i - 1] < 0) ? 1 : 0;
   if (changes == 0) return std::nullopt;
-  if (changes == 1 || depth == 0) {
-    const double width = to - from;
-    double low = 0.0;
-    double high = 1.0;
-    if ((b[0] < 0) == (b[3] < 0)) return std::nullopt;
-    for (int i = 0; i < 40; ++i) {
-      const double f_low = cubic_at(b, low);
-      const double f_high = cubic_at(b, high);
-      // A secant and a bisection in turn: fast on lines and never slower than halving.
-      const double s = i % 2 == 0 ? low + (high - low) * (f_low / (f_low - f_high)) : 0.5 * (low + high);
-      if (!(s > low && s < high)) break;
-      ((cubic_at(b, s) < 0) == (b[0] < 0) ? low : high) = s;
-      if (high - low < 1e-12) break;
-    }
-    return from + width * 0.5 * (low + high);
-  }
+  if (changes == 1) return from + (to - from) * bracketed_newton(b);
+  if (depth == 0) return std::nullopt;
   const double ab = 0.5 * (b[0] + b[1]);
   const double bc = 0.5 * (b[1] + b[2]);
   const double cd = 0.5 * (b[2] + b[3]);
@@ -199,7 +205,7 @@ CellRoot subdivided(const std::array<double, 4>& b, double from, double to, int 
 }
 
 CellRoot lane_riesenfeld(const CellProblem& problem) {
-  constexpr int kHalvings = 20;
+  constexpr int kHalvings = 24;
   return subdivided(segment_cubic(problem.corners, problem.enter, problem.leave), 0.0, 1.0, kHalvings);
 }
 

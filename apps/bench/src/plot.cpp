@@ -58,12 +58,13 @@ class Scale {
   [[nodiscard]] std::vector<double> decades() const {
     std::vector<double> values;
     const double span = high_ - low_;
-    // A decade each, or within few decades also 2 and 5 times it; many decades skip some.
+    // A decade each, within few decades also 2 and 5 times it, within one still more; many decades skip some.
     const int stride = std::max(1, int(std::ceil(span / 9.0)));
     for (int d = int(std::floor(low_)); d <= int(std::ceil(high_)); ++d) {
       if (d % stride != 0) continue;
-      for (const double m : {1.0, 2.0, 5.0}) {
-        if (m > 1.0 && span > 3.0) continue;
+      for (const double m : {1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 7.0}) {
+        const bool is_usual = m == 1.0 || m == 2.0 || m == 5.0;
+        if ((m > 1.0 && span > 3.0) || (!is_usual && span > 1.0)) continue;
         const double at = double(d) + std::log10(m);
         if (at >= low_ && at <= high_) values.push_back(std::pow(10.0, d) * m);
       }
@@ -81,7 +82,7 @@ class Scale {
       }
     }
     std::vector<double> values;
-    for (double n = std::ceil(low_ / step); n * step <= high_; n += 1.0) values.push_back(n * step);
+    for (double n = std::ceil(low_ / step); n * step <= high_; n += 1.0) values.push_back(n * step + 0.0);  // no -0
     return values;
   }
 

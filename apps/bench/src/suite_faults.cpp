@@ -51,7 +51,7 @@ Plot speeds(const std::vector<std::string>& tracers, const SuiteContext& context
     Series series{.name = name};
     for (const int n : sizes) {
       const Volume volume = sample_analytic_field("gyroid", n);
-      const Estimate rate = tracer_speed(name, volume, run, context.budget.share(pieces--), context).mrays;
+      const Estimate rate = tracer_speed(name, volume, 0.0f, run, context.budget.share(pieces--), context).mrays;
       series.points.push_back({double(n), rate.value, rate.low, rate.high});
     }
     plot.series.push_back(std::move(series));

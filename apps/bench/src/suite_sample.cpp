@@ -131,6 +131,12 @@ SuiteReport run_sample(const SuiteContext& context) {
     if (truth.edge) continue;  // a sun's shadow has no chance in it: one ray tells
     report.figures.emplace_back(error_against_rays(truth, volume, context, context.budget.share(pieces--), rates));
   }
+  for (const auto& row : rates.table.rows) {
+    if (std::get<std::string>(row[0]) != truths.front().name) continue;
+    report.highlights.push_back(fmt::format("{}, `{}`: the error falls as {} +- {}.", truths.front().name,
+                                            std::get<std::string>(row[1]), std::get<std::string>(row[3]),
+                                            std::get<std::string>(row[4])));
+  }
   report.figures.emplace_back(std::move(rates.table));
   report.figures.emplace_back(site_speed(context));
   return report;

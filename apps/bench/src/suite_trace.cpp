@@ -67,8 +67,8 @@ Table speed_table() {
               .columns = {"volume", "threads", "tracer", "Mrays/s", "quartile", "quartile ", "bricks/ray", "cells/ray",
                           "cubics/ray", "hits %"}};
   table.sentence =
-      "Bricks of cells entered, cells tested and cubics solved a ray, as the tracers count them; Embree in the fastest of "
-      "its calls.";
+      "Bricks of cells entered, cells tested and cubics solved a ray, as the tracers count them; a tracer that is asked for "
+      "any hit need not solve them. Embree in the fastest of its calls.";
   return table;
 }
 
@@ -185,7 +185,7 @@ void measure_sizes(const SuiteContext& context, Figures& figures) {
         Series& series = rates[t * (names.size() + 1) + i];
         Estimate rate;
         if (i < names.size()) {
-          const TracerSpeed speed = tracer_speed(names[i], volume, run, seconds, context);
+          const TracerSpeed speed = tracer_speed(names[i], volume, 0.0f, run, seconds, context);
           add_row(figures.all, title, threads[t], names[i], speed);
           rate = speed.mrays;
           work[i].name = names[i];
@@ -219,7 +219,7 @@ void measure_real(const SuiteContext& context, Figures& figures) {
     const double seconds = 0.8 * context.budget.share(left--) / double(names.size() + 1);
     const Volume volume = read_volume(context.data_folder + "/" + file);
     for (const std::string& name : names)
-      add_row(figures.all, file, run.threads, name, tracer_speed(name, volume, run, seconds, context));
+      add_row(figures.all, file, run.threads, name, tracer_speed(name, volume, isovalue, run, seconds, context));
     const Peer embree(volume, isovalue, context);
     if (embree.exists()) add_peer_row(figures.all, file, run.threads, embree.speed(run, seconds));
     add_touched(figures.untouched, file, volume, context);
@@ -252,8 +252,9 @@ SuiteReport run_trace(const SuiteContext& context) {
   SuiteReport report;
   Figures figures;
   figures.sizes.sentence =
-      "Cosine rays from sites uniform in the volume, each confined to its site's level set; Embree traces the triangles "
-      "of one isosurface only, any hit. Bars are quartiles of the repetitions.";
+      "Cosine rays from sites uniform in the volume, one a cell, each confined to its site's level set (where a whole "
+      "bake takes too long, the isovalues nearest to 0); Embree traces the triangles of the isosurface 0, any hit. Bars "
+      "are quartiles of the repetitions.";
   figures.work.sentence =
       "How many cells a ray has to look at; a ray that skipped nothing would cross a part of the volume that grows with "
       "its size (suite faults).";

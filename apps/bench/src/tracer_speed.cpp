@@ -3,34 +3,66 @@
 #include <isolux/core/stopwatch.h>
 
 #include <algorithm>
+#include <cmath>
+#include <optional>
 
 namespace isolux::bench {
 
-TracerSpeed tracer_speed(const std::string& tracer, const Volume& volume, const Run& run, double seconds,
-                         const SuiteContext& context) {
-  const auto sampler = context.stages.samplers.create("random");
+namespace {
+
+/// Sites as dense as one a cell, on the isovalues nearest to the given one.
+class DenseSites {
+ public:
+  DenseSites(const Volume& volume, float isovalue, const Run& run, const SuiteContext& context)
+      : volume_(volume), isovalue_(isovalue), run_(run), sampler_(context.stages.samplers.create("random")) {
+    constexpr std::size_t kProbes = 20000;
+    const Sites probes = sample(kProbes, {});
+    for (const float h : probes.isovalues) distances_.push_back(double(std::fabs(h - isovalue)));
+  }
+  [[nodiscard]] Sites some(std::size_t count) const {
+    const double cells = double(cell_lattice(volume_.lattice()).count());
+    if (double(count) >= cells) return sample(std::size_t(cells), {});
+    const auto reach = float(quantile(distances_, double(count) / cells));
+    return sample(count, ValueRange{.low = isovalue_ - reach, .high = isovalue_ + reach});
+  }
+
+ private:
+  [[nodiscard]] Sites sample(std::size_t count, std::optional<ValueRange> range) const {
+    return sampler_->sample(
+        volume_, {.texels = cell_lattice(volume_.lattice()), .count = count, .isovalues = range}, run_);
+  }
+
+  const Volume& volume_;
+  float isovalue_;
+  const Run& run_;
+  std::unique_ptr<const SiteSampler> sampler_;
+  std::vector<double> distances_;  ///< of random sites' isovalues
+};
+
+}  // namespace
+
+TracerSpeed tracer_speed(const std::string& tracer, const Volume& volume, float isovalue, const Run& run,
+                         double seconds, const SuiteContext& context) {
   const auto backend = context.stages.tracers.create(tracer);
-  const auto sites_of = [&](std::size_t count) {
-    return sampler->sample(volume, {.texels = cell_lattice(volume.lattice()), .count = count}, run);
-  };
-  const auto once = [&](const Sites& sites, TraceCounters& counters) {
+  const DenseSites dense(volume, isovalue, run, context);
+  TracerSpeed speed;
+  const auto once = [&](const Sites& sites) {
     const Stopwatch watch;
-    counters = backend->trace(volume, Scene{}, sites, {.rays = kSpeedRays, .bounces = 0}, run).counters;
+    speed.counters = backend->trace(volume, Scene{}, sites, {.rays = kSpeedRays, .bounces = 0}, run).counters;
     return watch.seconds();
   };
-  TracerSpeed speed;
-  std::size_t count = 512;
-  double spent = once(sites_of(count), speed.counters);
+  std::size_t count = 1024;
+  double spent = once(dense.some(count));
   // The first try pays for what a volume costs once: a second one is a better judge.
-  for (int step = 0; step < 2; ++step) {
-    count = std::min<std::size_t>(grown(count, spent, seconds / (step == 0 ? 30.0 : 6.0)), 4u << 20);
-    spent = once(sites_of(count), speed.counters);
+  for (const double part : {0.05, 0.15}) {
+    count = std::min<std::size_t>(grown(count, spent, part * seconds), 4u << 20);
+    spent = once(dense.some(count));
   }
-  const Sites sites = sites_of(count);
+  const Sites sites = dense.some(count);
   std::vector<double> rates;
   const Stopwatch all;
   do {
-    const double one = once(sites, speed.counters);
+    const double one = once(sites);
     rates.push_back(1e-6 * double(speed.counters.rays) / one);
   } while (rates.size() < 3 || (rates.size() < 9 && all.seconds() < 0.5 * seconds));
   speed.mrays = median(rates);

@@ -18,10 +18,11 @@ struct TracerSpeed {
   TraceCounters counters;
 };
 
-/// A tracer's speed on the ray population of flattened lighting: sites uniform in the volume, cosine rays over their
-/// hemispheres, no bounces. Takes about `seconds`: as many sites as fit, a few repetitions.
-[[nodiscard]] TracerSpeed tracer_speed(const std::string& tracer, const Volume& volume, const Run& run, double seconds,
-                                       const SuiteContext& context);
+/// A tracer's speed on the ray population of flattened lighting: sites uniform in the volume and as dense as in a bake
+/// of one a cell, cosine rays over their hemispheres, no bounces. Takes about `seconds`: where a whole bake would not
+/// fit, only the isovalues nearest to `isovalue` are lit, a few repetitions.
+[[nodiscard]] TracerSpeed tracer_speed(const std::string& tracer, const Volume& volume, float isovalue, const Run& run,
+                                       double seconds, const SuiteContext& context);
 
 /// A number of items that takes about `wanted` seconds where `items` took `seconds`.
 [[nodiscard]] std::size_t grown(std::size_t items, double seconds, double wanted);
