@@ -57,7 +57,8 @@ CellRoot parker(const CellProblem& problem) {
   if (!(size > 0)) return std::nullopt;
   for (Real& v : c) v /= size;
   if (std::fabs(c[3]) < kZero) {
-    if (std::fabs(c[2]) < kZero) return std::fabs(c[1]) < kZero ? CellRoot() : smallest_in_unit<Real>({-c[0] / c[1]}, 1);
+    if (std::fabs(c[2]) < kZero)
+      return std::fabs(c[1]) < kZero ? CellRoot() : smallest_in_unit<Real>({-c[0] / c[1]}, 1);
     const Real p = c[1] / (2 * c[2]);
     const Real d = p * p - c[0] / c[2];
     if (!(d >= 0)) return std::nullopt;

@@ -25,8 +25,14 @@ constexpr double kLostHits = 0.02;
 template <class Hits>
 class PlainTracer final : public FlatTracer {
  public:
-  using Options = NoOptions;
-  explicit PlainTracer(const NoOptions& /*options*/) {}
+  struct Options {
+    int longest_path = 1000;
+
+    void describe(OptionVisitor& option) {
+      option("longest_path", longest_path, {.min = 0, .max = 1e6, .help = "reflections at most"});
+    }
+  };
+  explicit PlainTracer(const Options& options) : options_(options) {}
 
   [[nodiscard]] TraceResult trace(const Volume& volume, const Scene& scene, Sites sites, const TraceSettings& settings,
                                   const Run& run) const override {
@@ -63,9 +69,9 @@ class PlainTracer final : public FlatTracer {
   }
 
  private:
-  static double follow(const Hits& hits, const Volume& volume, const Scene& scene, double sky, int bounces,
-                       const Sites& sites, std::size_t site, RandomStream& random, TraceCounters& counters) {
-    constexpr int kLongestPath = 1000;
+  [[nodiscard]] double follow(const Hits& hits, const Volume& volume, const Scene& scene, double sky, int bounces,
+                              const Sites& sites, std::size_t site, RandomStream& random,
+                              TraceCounters& counters) const {
     const TrilinearField field(volume);
     const float isovalue = sites.isovalues[site];
     const auto albedo = double(scene.albedo.at(isovalue).x);
@@ -74,7 +80,7 @@ class PlainTracer final : public FlatTracer {
     Vec3 normal(sites.normals[site]);
     double throughput = 1.0;
     double sum = 0.0;
-    for (int depth = 0; depth <= kLongestPath && normal != Vec3(0.0); ++depth) {
+    for (int depth = 0; depth <= options_.longest_path && normal != Vec3(0.0); ++depth) {
       const double u = random.uniform_double();
       const Vec3 towards = frame_about(normal).world(cosine_direction(u, random.uniform_double()));
       const Vec3 direction = glm::inverse(volume.lattice().frame.axes) * towards;
@@ -90,6 +96,8 @@ class PlainTracer final : public FlatTracer {
     }
     return sum;
   }
+
+  Options options_;
 };
 
 /// The scalar oracle, whose answer is thrown away once in fifty hits.

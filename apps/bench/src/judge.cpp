@@ -10,8 +10,8 @@ Table Judge::table() const {
               .columns = {"law", "backend", "cases", "figure", "worst", "allowed", "verdict"}};
   table.sentence = "Each row is a law that has to hold however the volume looks, with the worst figure found.";
   for (const Verdict& v : verdicts_) {
-    table.rows.push_back({v.law, v.backend, v.cases, v.figure, v.worst, v.allowed,
-                          std::string(v.passes() ? "pass" : "**FAIL**")});
+    table.rows.push_back(
+        {v.law, v.backend, v.cases, v.figure, v.worst, v.allowed, std::string(v.passes() ? "pass" : "**FAIL**")});
   }
   return table;
 }

@@ -43,12 +43,14 @@ int parse(int argc, char** argv, Arguments& arguments) {
   app.footer(footer + "Real volumes are taken from the folder that the environment variable ISOLUX_DATA names.");
   app.add_option("SUITE", arguments.names, "suites to run")->check(CLI::IsMember(known));
   app.add_option("-o,--output", arguments.folder, "folder for the results")->type_name("DIR")->capture_default_str();
-  app.add_flag("--quick{1},--full{2},--smoke{0}", arguments.effort,
-               "under a minute a suite on two cores (default); all sizes, some twenty minutes in all; seconds in all, to "
-               "see that everything runs");
+  app.add_flag(
+      "--quick{1},--full{2},--smoke{0}", arguments.effort,
+      "under a minute a suite on two cores (default); all sizes, some twenty minutes in all; seconds in all, to "
+      "see that everything runs");
   std::vector<std::string> ills;
   for (const Fault& fault : faults()) ills.emplace_back(fault.name);
-  app.add_option("--inject", arguments.fault, "judge a tracer that is wrong or slow on purpose, as if it were the default")
+  app.add_option("--inject", arguments.fault,
+                 "judge a tracer that is wrong or slow on purpose, as if it were the default")
       ->check(CLI::IsMember(ills));
   app.add_option("--threads", arguments.threads, "threads, 0 for all")->check(CLI::Range(0, 4096));
   app.add_option("--seed", arguments.seed, "seed of every random number")->capture_default_str();

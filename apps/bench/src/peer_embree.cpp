@@ -126,7 +126,8 @@ class Embree3Mesh final : public EmbreeMesh {
 std::unique_ptr<EmbreeMesh> EmbreeMesh::build(const IsoMesh& mesh) { return std::make_unique<Embree3Mesh>(mesh); }
 
 std::string embree_version() {
-  return fmt::format("{}, any hit, high build quality, incoherent rays in the fastest of its calls", RTC_VERSION_STRING);
+  return fmt::format("{}, any hit, high build quality, incoherent rays in the fastest of its calls",
+                     RTC_VERSION_STRING);
 }
 #else
 std::unique_ptr<EmbreeMesh> EmbreeMesh::build(const IsoMesh& /*mesh*/) { return nullptr; }

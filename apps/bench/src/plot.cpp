@@ -174,8 +174,8 @@ std::string curve(const Plot& plot, const Frame& frame, const Series& series, st
     const double y = frame.y.pixel(p.y);
     if (series.stroke == Stroke::kLine) line += fmt::format("{}{:.1f} {:.1f}", line.empty() ? "M" : "L", x, y);
     if (std::isfinite(p.left) && std::isfinite(p.right)) {
-      marks += fmt::format("<path d='M{:.1f} {:.1f}H{:.1f}' stroke='{}' fill='none'/>\n", frame.x.clamped_pixel(p.left), y,
-                           frame.x.clamped_pixel(p.right), colour);
+      marks += fmt::format("<path d='M{:.1f} {:.1f}H{:.1f}' stroke='{}' fill='none'/>\n", frame.x.clamped_pixel(p.left),
+                           y, frame.x.clamped_pixel(p.right), colour);
     }
     if (std::isfinite(p.low) && std::isfinite(p.high)) {
       marks += fmt::format("<path d='M{0:.1f} {1:.1f}V{2:.1f}m-3 0h6M{3:.1f} {1:.1f}h6' stroke='{4}' fill='none'/>\n",
@@ -184,8 +184,8 @@ std::string curve(const Plot& plot, const Frame& frame, const Series& series, st
     marks += mark(number, x, y, colour);
   }
   if (line.empty()) return marks;
-  return fmt::format("<path d='{}' fill='none' stroke='{}' stroke-width='1.6'{}/>\n{}", line, colour,
-                     dashes(number), marks);
+  return fmt::format("<path d='{}' fill='none' stroke='{}' stroke-width='1.6'{}/>\n{}", line, colour, dashes(number),
+                     marks);
 }
 
 }  // namespace

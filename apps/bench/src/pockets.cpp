@@ -19,10 +19,10 @@ bool is_in_closed_pocket(const Volume& volume, const Vec3& index, float isovalue
   std::vector<Index3> waiting;
   std::unordered_set<std::uint64_t> seen;
   const auto visit = [&](const Index3& p) {
-    const bool is_new = seen.insert((std::uint64_t(p.z) * std::uint64_t(size.y) + std::uint64_t(p.y)) *
-                                        std::uint64_t(size.x) +
-                                    std::uint64_t(p.x))
-                            .second;
+    const bool is_new =
+        seen.insert((std::uint64_t(p.z) * std::uint64_t(size.y) + std::uint64_t(p.y)) * std::uint64_t(size.x) +
+                    std::uint64_t(p.x))
+            .second;
     if (is_new && field.value(Vec3(p) / double(kRefinement)) < double(isovalue)) waiting.push_back(p);
   };
   for (int q = 0; q < 8; ++q) {

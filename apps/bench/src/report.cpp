@@ -133,8 +133,8 @@ void write_suite(const fs::path& folder, const Suite& suite, const SuiteReport& 
                      {"failures", report.failures},
                      {"highlights", report.highlights},
                      {"figures", nlohmann::json::array()}};
-  std::string text = fmt::format("## {}\n\n{}. Suite `{}`, {} run of {:.0f} s.\n\n", suite.title, suite.help, suite.name,
-                                 effort_name(context.effort), seconds);
+  std::string text = fmt::format("## {}\n\n{}. Suite `{}`, {} run of {:.0f} s.\n\n", suite.title, suite.help,
+                                 suite.name, effort_name(context.effort), seconds);
   for (const std::string& failure : report.failures) text += fmt::format("**Failed:** {}\n\n", failure);
   for (const auto& figure : report.figures) {
     const auto* plot = std::get_if<Plot>(&figure);

@@ -12,8 +12,8 @@ namespace isolux::bench {
 
 /// Random points on level sets whose exact light is known: where resampled light is judged.
 struct ProbePoints {
-  std::vector<Vec3f> index;            ///< index space
-  std::vector<double> e;               ///< exact
+  std::vector<Vec3f> index;             ///< index space
+  std::vector<double> e;                ///< exact
   std::vector<std::uint8_t> near_edge;  ///< 1 within one and a half cells of a jump of e
 };
 [[nodiscard]] ProbePoints probe_points(const Truth& truth, const Volume& volume, std::size_t count,

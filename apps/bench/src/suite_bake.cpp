@@ -1,4 +1,5 @@
 #include <fmt/format.h>
+#include <isolux/core/stopwatch.h>
 #include <isolux/volume_io/analytic_fields.h>
 #include <isolux/volume_io/read.h>
 
@@ -53,12 +54,18 @@ std::vector<Method> methods(const Target& target, const SuiteContext& context) {
                       settings.samples = 4 * cells;
                     });
                   }});
-  list.push_back({"Challis 2010", 1000, context.pick(1000, 16000, 256000), "samples", [=, &target, &context](int samples) {
-                    return baked(target, thesis_settings(std::size_t(samples)), context);
-                  }});
+  list.push_back(
+      {"Challis 2010", 1000, context.pick(1000, 16000, 256000), "samples",
+       [=, &target, &context](int samples) { return baked(target, thesis_settings(std::size_t(samples)), context); }});
   list.push_back({"Wyman 2006, K surfaces", 2, context.pick(2, 32, 512), "surfaces",
                   [=, &target, &context](int surfaces) { return coupled(target, surfaces, 64, context); }});
-  if (target.bounces != 0) return list;
+  if (target.bounces != 0) {
+    list.push_back({"isolux, bounces by paths", 4, context.pick(4, 64, 1024), "rays", [=](int rays) {
+                      return bake_with(rays,
+                                       [](BakeSettings& settings) { settings.bounce_method = BounceMethod::kPaths; });
+                    }});
+    return list;
+  }
   list.push_back({"Embree, ONE isosurface", 4, context.pick(4, 64, 1024), "rays",
                   [=, &target, &context](int rays) -> std::optional<Measured> {
                     const auto one = one_surface(target, rays, context);
@@ -119,13 +126,43 @@ std::string comparison(const Plot& plot, const std::string& title) {
     if (other.name.rfind("isolux", 0) == 0 || other.name.rfind("Embree", 0) == 0 || other.points.empty()) continue;
     const auto& best = *std::min_element(other.points.begin(), other.points.end(),
                                          [](const PlotPoint& a, const PlotPoint& b) { return a.y < b.y; });
-    const auto as_good = std::find_if(ours.points.begin(), ours.points.end(),
-                                      [&](const PlotPoint& p) { return p.y <= best.y; });
+    const auto as_good =
+        std::find_if(ours.points.begin(), ours.points.end(), [&](const PlotPoint& p) { return p.y <= best.y; });
     text += fmt::format("{}{} reaches {} in {} s", text.empty() ? "" : "; ", other.name, number_text(best.y),
                         number_text(best.x));
-    if (as_good != ours.points.end()) text += fmt::format(", isolux {} in {} s", number_text(as_good->y), number_text(as_good->x));
+    if (as_good != ours.points.end())
+      text += fmt::format(", isolux {} in {} s", number_text(as_good->y), number_text(as_good->x));
   }
   return fmt::format("{}: {}.", title, text);
+}
+
+/// Default bakes of whole volumes, by stage.
+Table whole_bakes(const SuiteContext& context) {
+  Table table{.id = "whole",
+              .title = "Whole bakes at the defaults",
+              .columns = {"volume", "texels", "million rays", "tracing, s", "bounces, s", "in all, s",
+                          "Mrays/s of tracing", "sweeps", "error estimate"}};
+  table.sentence = "One site a cell, 64 rays each, all bounces by iteration; the error is the bake's own estimate.";
+  std::vector<std::string> names{fmt::format("gen:gyroid:{}", context.pick(9, 33, 65))};
+  if (context.effort == Effort::kFull) names.emplace_back("gen:gyroid:129");
+  if (!context.data_folder.empty() && context.effort == Effort::kFull) {
+    for (const char* file : {"neghip_64x64x64_uint8.raw", "headsq_quarter.nrrd"}) names.emplace_back(file);
+  }
+  for (const std::string& name : names) {
+    const bool is_generated = name.rfind("gen:", 0) == 0;
+    const Volume volume = read_volume(is_generated ? name : context.data_folder + "/" + name);
+    const Stopwatch watch;
+    const BakeResult result = bake(volume, Scene{}, {}, context.stages, context.run);
+    const double all = watch.seconds();
+    const double mrays = 1e-6 * double(result.counters.rays);
+    const auto seconds = [&](const char* stage) {
+      const auto found = result.seconds.find(stage);
+      return found == result.seconds.end() ? 0.0 : found->second;
+    };
+    table.rows.push_back({name, double(result.light.lattice.count()), mrays, seconds("trace"), seconds("bounces"), all,
+                          mrays / seconds("trace"), double(result.sweeps), result.rmse_estimate});
+  }
+  return table;
 }
 
 /// Makes a target when its turn comes.
@@ -175,7 +212,8 @@ SuiteReport run_bake(const SuiteContext& context) {
       "past the last column's number of isovalues the bake of all level sets is the cheaper one.";
   const std::vector<Maker> all = makers(context);
   for (std::size_t i = 0; i < all.size(); ++i) {
-    const double seconds = context.budget.share(all.size() - i);
+    // As much again as for one target is kept for what comes after them.
+    const double seconds = context.budget.share(all.size() + 1 - i);
     const Target target = all[i].make(0.15 * seconds);
     context.say(target.title);
     Plot plot = curves(target, 0.65 * seconds, context, table);
@@ -183,6 +221,7 @@ SuiteReport run_bake(const SuiteContext& context) {
     report.figures.emplace_back(std::move(plot));
     if (target.bounces == 0) break_even(target, context, even);
   }
+  report.figures.emplace_back(whole_bakes(context));
   if (!even.rows.empty()) report.figures.emplace_back(std::move(even));
   report.figures.emplace_back(std::move(table));
   return report;

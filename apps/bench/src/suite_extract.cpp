@@ -80,15 +80,18 @@ Geometry geometry_error(const IsoMesh& mesh, const Shape& shape) {
 void accuracy(const SuiteContext& context, SuiteReport& report) {
   Table table{.id = "accuracy",
               .title = "Geometric error",
-              .columns = {"surface", "backend", "n", "triangles", "ms", "rms distance", "largest distance (Hausdorff, from the mesh)",
-                          "rms normal angle, deg", "area error", "volume error", "Euler number", "expected"},
+              .columns = {"surface", "backend", "n", "triangles", "ms", "rms distance",
+                          "largest distance (Hausdorff, from the mesh)", "rms normal angle, deg", "area error",
+                          "volume error", "Euler number", "expected"},
               .sentence =
                   "Distances from vertices and middles of triangles to the analytic surface in the unit cube, relative "
                   "errors of area and volume."};
-  Table rates{.id = "rates",
-              .title = "Fitted rates",
-              .columns = {"surface", "backend", "rms distance falls as", "+- (95 %)", "area error falls as", "+- (95 %) "},
-              .sentence = "Least squares in logarithms over n, +- half the 95 % interval; linear interpolation is of second order."};
+  Table rates{
+      .id = "rates",
+      .title = "Fitted rates",
+      .columns = {"surface", "backend", "rms distance falls as", "+- (95 %)", "area error falls as", "+- (95 %) "},
+      .sentence =
+          "Least squares in logarithms over n, +- half the 95 % interval; linear interpolation is of second order."};
   Plot plot{.id = "distance",
             .title = "Distance to the analytic surface against time",
             .x_label = "ms",
@@ -96,8 +99,7 @@ void accuracy(const SuiteContext& context, SuiteReport& report) {
   plot.sentence =
       "Along a curve n doubles: what accuracy a millisecond of extraction buys; bars are quartiles of the time's "
       "repetitions.";
-  const std::vector<int> sizes =
-      context.pick<std::vector<int>>({16, 24}, {16, 32, 64, 128}, {16, 32, 64, 128, 256});
+  const std::vector<int> sizes = context.pick<std::vector<int>>({16, 24}, {16, 32, 64, 128}, {16, 32, 64, 128, 256});
   for (const Shape& shape : shapes()) {
     for (const BackendInfo& info : context.stages.extractors.backends()) {
       if (!info.unavailable.empty()) continue;

@@ -87,8 +87,8 @@ SuiteReport run_faults(const SuiteContext& context) {
   for (const auto& [name, judge] : judged) {
     const std::vector<std::string> found = judge.failures();
     report.highlights.push_back(fmt::format("`{}` fails {} of {} laws{}{}.", name, found.size(),
-                                            judge.verdicts().size(), found.empty() ? "" : ", the first: ",
-                                            found.empty() ? "" : found.front()));
+                                            judge.verdicts().size(),
+                                            found.empty() ? "" : ", the first: ", found.empty() ? "" : found.front()));
     if (name == tracers.front()) {
       report.failures = found;
     } else if (found.empty()) {

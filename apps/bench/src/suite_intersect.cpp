@@ -236,7 +236,8 @@ std::string comparison(const Table& table) {
     }
   }
   return fmt::format(
-      "In the worst set of cells our intersector answers {} tests in a million wrongly, the best of the others ({}) {}.",
+      "In the worst set of cells our intersector answers {} tests in a million wrongly, the best of the others ({}) "
+      "{}.",
       number_text(ours), best, number_text(fewest));
 }
 
@@ -247,7 +248,8 @@ SuiteReport run_intersect(const SuiteContext& context) {
   const std::vector<ProblemSet> sets = problem_sets(context);
   Figures figures;
   figures.wrong.sentence =
-      "A mark for each set of cells, with the deviation of the count; what made no wrong hit is drawn at a third of one "
+      "A mark for each set of cells, with the deviation of the count; what made no wrong hit is drawn at a third of "
+      "one "
       "hit.";
   figures.table.sentence =
       "Judged in long double precision; wrong are hits where there is none, misses, and roots more than a tenth of the "

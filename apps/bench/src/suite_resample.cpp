@@ -25,8 +25,7 @@ bool has_option(const BackendInfo& info, std::string_view name) {
 /// Every backend that takes scattered samples. The Shepard family, whose backends agree to rounding, is varied for one
 /// of them and timed for the others.
 std::vector<Method> methods(const SuiteContext& context) {
-  const std::vector<int> ks =
-      context.pick<std::vector<int>>({11}, {4, 11, 32}, {1, 4, 11, 16, 32, 64});
+  const std::vector<int> ks = context.pick<std::vector<int>>({11}, {4, 11, 32}, {1, 4, 11, 16, 32, 64});
   std::vector<Method> list;
   for (const BackendInfo& info : context.stages.resamplers.backends()) {
     if (!info.unavailable.empty() || info.name == "direct") continue;
@@ -162,14 +161,14 @@ std::string comparison(const Plot& plot, const std::string& title) {
     return *std::min_element(s.points.begin(), s.points.end(),
                              [](const PlotPoint& a, const PlotPoint& b) { return a.y < b.y; });
   };
-  const auto best = std::min_element(plot.series.begin(), plot.series.end(), [&](const Series& a, const Series& b) {
-    return least(a).y < least(b).y;
-  });
+  const auto best = std::min_element(plot.series.begin(), plot.series.end(),
+                                     [&](const Series& a, const Series& b) { return least(a).y < least(b).y; });
   const auto thesis = std::find_if(plot.series.begin(), plot.series.end(),
                                    [](const Series& s) { return s.name == "Shepard, p = 0.5"; });
-  return fmt::format("{}: `{}` is the most accurate, rms {} in {} ms; Shepard's weights with p = .5 come to {} in {} ms.",
-                     title, best->name, number_text(least(*best).y), number_text(least(*best).x),
-                     number_text(least(*thesis).y), number_text(least(*thesis).x));
+  return fmt::format(
+      "{}: `{}` is the most accurate, rms {} in {} ms; Shepard's weights with p = .5 come to {} in {} ms.", title,
+      best->name, number_text(least(*best).y), number_text(least(*best).x), number_text(least(*thesis).y),
+      number_text(least(*thesis).x));
 }
 
 }  // namespace
@@ -183,9 +182,8 @@ SuiteReport run_resample(const SuiteContext& context) {
   table.sentence =
       "The figures behind the pictures, for all three ways of scattering sites; the last column is of points within "
       "one and a half cells of a shadow's edge.";
-  Table rates{.id = "rates",
-              .title = "Fitted rates",
-              .columns = {"case", "method", "points", "error falls as", "+- (95 %)"}};
+  Table rates{
+      .id = "rates", .title = "Fitted rates", .columns = {"case", "method", "points", "error falls as", "+- (95 %)"}};
   rates.sentence =
       "Least squares in logarithms over all points of a curve; +- is half the 95 % interval of the exponent.";
   const int n = context.pick(13, 25, 65);

@@ -19,8 +19,8 @@ struct Rates {
   void add(const std::string& scene, const Series& series, const std::string& what) {
     if (series.points.size() < 3) return;
     const PowerLaw law = fit_power_law(series.points);
-    table.rows.push_back({scene, series.name, double(series.points.size()), fmt::format("{}^{:.2f}", what, law.exponent),
-                          fmt::format("{:.2f}", law.exponent_bar)});
+    table.rows.push_back({scene, series.name, double(series.points.size()),
+                          fmt::format("{}^{:.2f}", what, law.exponent), fmt::format("{:.2f}", law.exponent_bar)});
   }
 };
 
@@ -126,8 +126,7 @@ SuiteReport run_sample(const SuiteContext& context) {
   for (const Truth& truth : truths) {
     context.say(truth.name);
     const Volume volume = sample_analytic_field(truth.field, context.pick(17, 41, 129));
-    report.figures.emplace_back(
-        error_against_sites(truth, volume, context, context.budget.share(pieces--), rates));
+    report.figures.emplace_back(error_against_sites(truth, volume, context, context.budget.share(pieces--), rates));
     if (truth.edge) continue;  // a sun's shadow has no chance in it: one ray tells
     report.figures.emplace_back(error_against_rays(truth, volume, context, context.budget.share(pieces--), rates));
   }

@@ -29,7 +29,8 @@ void invariance(const SuiteContext& context, Judge& judge, const std::string& wh
   const LevelSetIntersector before(pair.volume);
   const LevelSetIntersector after(pair.transformed);
   const Sites sites = context.stages.samplers.create("random")->sample(
-      pair.volume, {.texels = cell_lattice(pair.volume.lattice()), .count = std::size_t(context.pick(2000, 20000, 400000))},
+      pair.volume,
+      {.texels = cell_lattice(pair.volume.lattice()), .count = std::size_t(context.pick(2000, 20000, 400000))},
       context.run);
   double worst = 0.0;
   double disagreements = 0.0;
@@ -97,9 +98,8 @@ SuiteReport run_stability(const SuiteContext& context) {
   for (const auto& [what, pair] : transformations(context.run)) invariance(context, judge, what, pair);
   constants(context, judge);
   report.failures = judge.failures();
-  report.highlights.push_back(
-      fmt::format("{} of {} laws hold; the worst figure of each stands in the table.",
-                  judge.verdicts().size() - report.failures.size(), judge.verdicts().size()));
+  report.highlights.push_back(fmt::format("{} of {} laws hold; the worst figure of each stands in the table.",
+                                          judge.verdicts().size() - report.failures.size(), judge.verdicts().size()));
   report.figures.emplace_back(judge.table());
   report.figures.emplace_back(std::move(energy));
   return report;

@@ -56,19 +56,21 @@ std::vector<ThesisVolume> volumes(const SuiteContext& context) {
   return all;
 }
 
+int rays(const SuiteContext& context) { return context.pick(4, 64, 64); }
+
 /// Texels times samples that comparing all with all is given: a few seconds; more shows nothing new.
 double affordable_work(const SuiteContext& context) { return context.pick(1e6, 3e8, 1e10); }
 
-BakeSettings thesis_method(int samples) {
+BakeSettings thesis_method(int samples, const SuiteContext& context) {
   BakeSettings settings = thesis_settings(std::size_t(samples));
-  settings.trace.rays = 64;
+  settings.trace.rays = rays(context);
   return settings;
 }
 
-BakeSettings same_samples(int samples) {
+BakeSettings same_samples(int samples, const SuiteContext& context) {
   BakeSettings settings;
   settings.samples = std::size_t(samples);
-  settings.trace.rays = 64;
+  settings.trace.rays = rays(context);
   return settings;
 }
 
@@ -90,16 +92,17 @@ Table total_times(const SuiteContext& context) {
   for (const ThesisVolume& v : volumes(context)) {
     context.say(v.name);
     BakeSettings ours;
-    ours.trace.rays = 64;
+    ours.trace.rays = rays(context);
     const double every_texel = bake_ms(v.volume, ours, context);
     for (std::size_t s = 0; s < kSamples.size(); ++s) {
       const double work = double(kSamples[s]) * double(v.volume.lattice().count());
       const bool affordable = work <= affordable_work(context);
-      table.rows.push_back(
-          {v.name, double(kSamples[s]), v.theirs[s],
-           affordable ? bake_ms(v.volume, thesis_method(kSamples[s]), context) : kNone,
-           kSamples[s] <= context.pick(100, 10000, 100000) ? bake_ms(v.volume, same_samples(kSamples[s]), context) : kNone,
-           every_texel});
+      table.rows.push_back({v.name, double(kSamples[s]), v.theirs[s],
+                            affordable ? bake_ms(v.volume, thesis_method(kSamples[s], context), context) : kNone,
+                            kSamples[s] <= context.pick(100, 10000, 100000)
+                                ? bake_ms(v.volume, same_samples(kSamples[s], context), context)
+                                : kNone,
+                            every_texel});
     }
   }
   return table;
@@ -123,8 +126,9 @@ Table stage_times(const SuiteContext& context) {
     table.rows.push_back(
         {v.name, std::string("sites (theirs: sample creation)"), theirs[1][column], 1e3 * sites_watch.seconds()});
     const Stopwatch trace_watch;
-    const SampleSet samples =
-        context.stages.tracers.create()->trace(v.volume, Scene{}, std::move(sites), {.rays = 64}, context.run).samples;
+    const SampleSet samples = context.stages.tracers.create()
+                                  ->trace(v.volume, Scene{}, std::move(sites), {.rays = rays(context)}, context.run)
+                                  .samples;
     table.rows.push_back({v.name, std::string("tracing, 64 rays, all bounces"), kNone, 1e3 * trace_watch.seconds()});
     for (const char* backend : {"brute_force", "cell_grid"}) {
       const double work = 1e4 * double(v.volume.lattice().count());
@@ -165,7 +169,8 @@ Table extraction_rates(const SuiteContext& context) {
   for (const Row& row : rows) {
     IsoExtractor extractor(row.volume, context.run);
     IndexedMesh mesh;
-    const Estimate seconds = timed([&] { extractor.extract({.isovalue = row.isovalue}, context.run, mesh); }, 50, context.pick(0.05, 0.5, 1.0));
+    const Estimate seconds = timed([&] { extractor.extract({.isovalue = row.isovalue}, context.run, mesh); }, 50,
+                                   context.pick(0.05, 0.5, 1.0));
     table.rows.push_back(
         {row.name, double(row.isovalue), row.triangles, row.rate, double(mesh.triangles.size()), 1.0 / seconds.value});
   }
@@ -202,7 +207,9 @@ Table frame_rates(const SuiteContext& context) {
     const LightAt read = [&reader](const SurfacePoint& point) { return reader.at_index(point.index); };
     const RenderSettings settings{.width = 256, .height = 256, .supersampling = 1, .isovalue = row.isovalue};
     const auto rate = [&](const Shader& shader) {
-      return 1.0 / timed([&] { (void)render(row.volume, camera, settings, shader, context.run); }, 9, context.pick(0.05, 0.7, 1.5)).value;
+      return 1.0 / timed([&] { (void)render(row.volume, camera, settings, shader, context.run); }, 9,
+                         context.pick(0.05, 0.7, 1.5))
+                       .value;
     };
     table.rows.push_back(
         {row.name, row.local, row.texture, rate(local_shader(Vec3f(0.8f))), rate(global_shader(read, Vec3f(0.8f)))});

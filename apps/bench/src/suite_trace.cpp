@@ -67,7 +67,8 @@ Table speed_table() {
               .columns = {"volume", "threads", "tracer", "Mrays/s", "quartile", "quartile ", "bricks/ray", "cells/ray",
                           "cubics/ray", "hits %"}};
   table.sentence =
-      "Bricks of cells entered, cells tested and cubics solved a ray, as the tracers count them; a tracer that is asked for "
+      "Bricks of cells entered, cells tested and cubics solved a ray, as the tracers count them; a tracer that is "
+      "asked for "
       "any hit need not solve them. Embree in the fastest of its calls.";
   return table;
 }
@@ -116,8 +117,8 @@ Touched touched_cells(const Volume& volume, std::size_t count, const SuiteContex
     }
   }
   std::vector<std::atomic<std::uint8_t>> marks(cells);
-  const Sites sites =
-      context.stages.samplers.create("random")->sample(volume, {.texels = cell_lattice(lattice), .count = count}, context.run);
+  const Sites sites = context.stages.samplers.create("random")->sample(
+      volume, {.texels = cell_lattice(lattice), .count = count}, context.run);
   (void)gather(volume, sites, {.rays = kSpeedRays}, context.run, [&](const GatheredRays& rays) {
     for (std::size_t r = 0; r < rays.sites.size() * rays.rays; ++r) {
       const std::uint32_t site = rays.sites[r / rays.rays];
@@ -141,9 +142,11 @@ Touched touched_cells(const Volume& volume, std::size_t count, const SuiteContex
 }
 
 void add_touched(Table& table, const std::string& name, const Volume& volume, const SuiteContext& context) {
-  const std::size_t sites = std::min<std::size_t>(cell_lattice(volume.lattice()).count() / 64, context.pick(500, 20000, 100000));
+  const std::size_t sites =
+      std::min<std::size_t>(cell_lattice(volume.lattice()).count() / 64, context.pick(500, 20000, 100000));
   const Touched part = touched_cells(volume, sites, context);
-  table.rows.push_back({name, double(sites * kSpeedRays), 100.0 * part.constant, 100.0 * part.uncrossed, 100.0 * part.untested});
+  table.rows.push_back(
+      {name, double(sites * kSpeedRays), 100.0 * part.constant, 100.0 * part.uncrossed, 100.0 * part.untested});
 }
 
 /// The figures of the suite as they grow.
@@ -253,13 +256,16 @@ SuiteReport run_trace(const SuiteContext& context) {
   Figures figures;
   figures.sizes.sentence =
       "Cosine rays from sites uniform in the volume, one a cell, each confined to its site's level set (where a whole "
-      "bake takes too long, the isovalues nearest to 0); Embree traces the triangles of the isosurface 0, any hit. Bars "
+      "bake takes too long, the isovalues nearest to 0); Embree traces the triangles of the isosurface 0, any hit. "
+      "Bars "
       "are quartiles of the repetitions.";
   figures.work.sentence =
-      "How many cells a ray has to look at; a ray that skipped nothing would cross a part of the volume that grows with "
+      "How many cells a ray has to look at; a ray that skipped nothing would cross a part of the volume that grows "
+      "with "
       "its size (suite faults).";
   figures.untouched.sentence =
-      "Cells of one value hold no level set; a cell has to be tested where it reaches the isovalue of a ray that crosses "
+      "Cells of one value hold no level set; a cell has to be tested where it reaches the isovalue of a ray that "
+      "crosses "
       "it. 64 rays from one site for every 64 cells or fewer.";
   measure_sizes(context, figures);
   if (!context.data_folder.empty() && context.effort != Effort::kSmoke) measure_real(context, figures);

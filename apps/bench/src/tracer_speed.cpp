@@ -28,8 +28,8 @@ class DenseSites {
 
  private:
   [[nodiscard]] Sites sample(std::size_t count, std::optional<ValueRange> range) const {
-    return sampler_->sample(
-        volume_, {.texels = cell_lattice(volume_.lattice()), .count = count, .isovalues = range}, run_);
+    return sampler_->sample(volume_, {.texels = cell_lattice(volume_.lattice()), .count = count, .isovalues = range},
+                            run_);
   }
 
   const Volume& volume_;
