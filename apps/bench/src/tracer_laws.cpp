@@ -178,7 +178,7 @@ void numbers(const Bench& bench, Judge& judge) {
 /// Twice the light is twice e, to the bit: the random numbers are the same and 2 is a power of two.
 void linearity(const Bench& bench, Judge& judge) {
   const Volume volume = sample_analytic_field("marschner-lobb", 41);
-  const Sites sites = bench.sites(volume, 500);
+  const Sites sites = bench.sites(volume, std::size_t(bench.context.pick(100, 500, 5000)));
   Scene twice;
   twice.environment = UniformEnvironment{Vec3f(2.0f)};
   const SampleSet once = bench.trace(volume, Scene{}, sites, 32, kAllBounces).samples;

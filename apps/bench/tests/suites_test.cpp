@@ -67,6 +67,8 @@ TEST_P(EverySuite, WritesValidJsonCsvAndSvg) {
   const auto json = nlohmann::json::parse(text_of(folder / (GetParam() + ".json")));
   EXPECT_EQ(json.at("effort"), "smoke");
   EXPECT_FALSE(json.at("highlights").empty());
+  // The laws hold, and no fault goes unseen: sizes are small, but none of it is a matter of chance with a fixed seed.
+  EXPECT_THAT(report.failures, testing::IsEmpty());
   EXPECT_EQ(json.at("figures").size(), report.figures.size());
   for (const auto& figure : json.at("figures")) {
     const std::string id = figure.at("id");
@@ -89,20 +91,16 @@ INSTANTIATE_TEST_SUITE_P(Bench, EverySuite, testing::ValuesIn([] {
                            for (const Suite& suite : suites()) names.emplace_back(suite.name);
                            return names;
                          }()),
-                         [](const auto& info) { return info.param; });
+                         [](const auto& test) { return test.param; });
 
 class EveryFault : public testing::TestWithParam<std::string> {};
 
-TEST_P(EveryFault, FailsALawThatTheHealthyTracerKeeps) {
-  const SuiteContext healthy = smoke();
-  SuiteContext ill = smoke();
-  ill.stages = with_fault(std::move(ill.stages), GetParam());
-  Judge without;
-  Judge with;
-  try_laws(healthy.stages.tracers.info({}).name, healthy, 1.0, without);
-  try_laws(GetParam(), ill, 1.0, with);
-  EXPECT_THAT(without.failures(), testing::IsEmpty());
-  EXPECT_THAT(with.failures(), testing::Not(testing::IsEmpty()));
+TEST_P(EveryFault, FailsALaw) {
+  SuiteContext context = smoke();
+  context.stages = with_fault(std::move(context.stages), GetParam());
+  Judge judge;
+  try_laws(GetParam(), context, 0.1, judge);
+  EXPECT_THAT(judge.failures(), testing::Not(testing::IsEmpty()));
 }
 
 INSTANTIATE_TEST_SUITE_P(Bench, EveryFault, testing::ValuesIn([] {
@@ -110,7 +108,7 @@ INSTANTIATE_TEST_SUITE_P(Bench, EveryFault, testing::ValuesIn([] {
                            for (const Fault& fault : faults()) names.emplace_back(fault.name);
                            return names;
                          }()),
-                         [](const auto& info) { return info.param; });
+                         [](const auto& test) { return test.param; });
 
 TEST(Faults, RefusesAnUnknownName) { EXPECT_THROW((void)with_fault(builtin_stages(), "no_light"), InvalidInput); }
 
