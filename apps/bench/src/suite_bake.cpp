@@ -39,7 +39,6 @@ std::vector<Method> methods(const Target& target, const SuiteContext& context) {
     change(settings);
     return baked(target, settings, context);
   };
-  const std::size_t cells = cell_lattice(target.volume.lattice()).count();
   std::vector<Method> list;
   list.push_back({"isolux, presets (16, 64, 1024 rays)", 4, context.pick(4, 256, 4096), "rays",
                   [=](int rays) { return bake_with(rays, [](BakeSettings&) {}); }});
@@ -49,9 +48,9 @@ std::vector<Method> methods(const Target& target, const SuiteContext& context) {
                     });
                   }});
   list.push_back({"isolux, fit to 4 sites a cell", 4, context.pick(4, 64, 1024), "rays", [=](int rays) {
-                    return bake_with(rays, [cells](BakeSettings& settings) {
+                    return bake_with(rays, [](BakeSettings& settings) {
                       settings.resampler.name = "fit";
-                      settings.samples = 4 * cells;
+                      settings.sites_a_cell = 4.0;
                     });
                   }});
   list.push_back(

@@ -51,19 +51,22 @@ TracerSpeed tracer_speed(const std::string& tracer, const Volume& volume, float 
     speed.counters = backend->trace(volume, Scene{}, sites, {.rays = kSpeedRays, .bounces = 0}, run).counters;
     return watch.seconds();
   };
-  std::size_t count = 1024;
-  double spent = once(dense.some(count));
-  // The first try pays for what a volume costs once: a second one is a better judge.
+  constexpr std::size_t kFew = 64;
+  const Sites few = dense.some(kFew);
+  (void)once(few);
+  speed.setup_seconds = once(few);
+  const auto beyond_setup = [&](const Sites& sites) { return std::max(once(sites) - speed.setup_seconds, 1e-4); };
+  std::size_t count = 2048;
   for (const double part : {0.05, 0.15}) {
-    count = std::min<std::size_t>(grown(count, spent, part * seconds), 4u << 20);
-    spent = once(dense.some(count));
+    const std::size_t wanted = grown(count, beyond_setup(dense.some(count)), part * seconds);
+    count = std::clamp<std::size_t>(wanted, count, 4u << 20);
   }
   const Sites sites = dense.some(count);
   std::vector<double> rates;
   const Stopwatch all;
   do {
-    const double one = once(sites);
-    rates.push_back(1e-6 * double(speed.counters.rays) / one);
+    const double spent = beyond_setup(sites);
+    rates.push_back(1e-6 * double(speed.counters.rays) / spent);
   } while (rates.size() < 3 || (rates.size() < 9 && all.seconds() < 0.5 * seconds));
   speed.mrays = median(rates);
   return speed;

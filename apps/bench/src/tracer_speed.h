@@ -14,7 +14,8 @@ namespace isolux::bench {
 inline constexpr int kSpeedRays = 64;  ///< a site
 
 struct TracerSpeed {
-  Estimate mrays;  ///< million rays a second: median and quartiles
+  Estimate mrays;              ///< million rays a second once set up: median and quartiles
+  double setup_seconds = 0.0;  ///< what a volume costs before the first ray
   TraceCounters counters;
 };
 
