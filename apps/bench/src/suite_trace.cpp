@@ -69,7 +69,8 @@ Table speed_table() {
   table.sentence =
       "Bricks of cells entered, cells tested and cubics solved a ray, as the tracers count them; a tracer that is "
       "asked for "
-      "any hit need not solve them. Setting up is left out of the rates: what a tracer makes of the volume, and Embree's "
+      "any hit need not solve them. Setting up is left out of the rates: what a tracer makes of the volume, and "
+      "Embree's "
       "tree; Embree in the fastest of its calls.";
   return table;
 }
@@ -78,7 +79,8 @@ void add_row(Table& table, const std::string& volume, int threads, const std::st
   const auto rays = double(speed.counters.rays);
   table.rows.push_back({volume, double(threads), name, speed.mrays.value, speed.mrays.low, speed.mrays.high,
                         double(speed.counters.macrocells) / rays, double(speed.counters.cells) / rays,
-                        double(speed.counters.cubics) / rays, 100.0 * double(speed.counters.hits) / rays, speed.setup_seconds});
+                        double(speed.counters.cubics) / rays, 100.0 * double(speed.counters.hits) / rays,
+                        speed.setup_seconds});
 }
 
 void add_peer_row(Table& table, const std::string& volume, int threads, const std::pair<Estimate, EmbreeCall>& speed,
@@ -226,7 +228,8 @@ void measure_real(const SuiteContext& context, Figures& figures) {
     for (const std::string& name : names)
       add_row(figures.all, file, run.threads, name, tracer_speed(name, volume, isovalue, run, seconds, context));
     const Peer embree(volume, isovalue, context);
-    if (embree.exists()) add_peer_row(figures.all, file, run.threads, embree.speed(run, seconds), embree.build_seconds());
+    if (embree.exists())
+      add_peer_row(figures.all, file, run.threads, embree.speed(run, seconds), embree.build_seconds());
     add_touched(figures.untouched, file, volume, context);
   }
 }
