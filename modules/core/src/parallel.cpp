@@ -18,9 +18,7 @@ void throw_if_stopped(const Run& run) {
 
 std::size_t block_count(std::size_t count, std::size_t block_size) { return (count + block_size - 1) / block_size; }
 
-int thread_count(const Run& run) {
-  return run.threads > 0 ? run.threads : tbb::info::default_concurrency();
-}
+int thread_count(const Run& run) { return run.threads > 0 ? run.threads : tbb::info::default_concurrency(); }
 
 void parallel_blocks(std::size_t count, std::size_t block_size, const Run& run, std::string_view stage,
                      const std::function<void(const Block&)>& body) {
@@ -40,7 +38,8 @@ void parallel_blocks(std::size_t count, std::size_t block_size, const Run& run, 
   if (threads == 1) {
     for (std::size_t b = 0; b < blocks; ++b) work(b);
   } else {
-    // oneTBB prints a warning when it is asked for more threads than this process may run at once, unless told so before.
+    // oneTBB prints a warning when it is asked for more threads than this process may run at once, unless told so
+    // before.
     std::optional<tbb::global_control> more_than_cores;
     if (threads > tbb::info::default_concurrency()) {
       more_than_cores.emplace(tbb::global_control::max_allowed_parallelism, std::size_t(threads));

@@ -37,8 +37,7 @@ constexpr Subject kSubjects[] = {{"gyroid256", "gen:gyroid:256", 0.1f},
                                  {"bonsai", "bonsai.nrrd", 40.0f}};
 
 /// Small surfaces (about 10^5 triangles) in large volumes: what a search has to find. In one place, and everywhere.
-constexpr Subject kSparseSubjects[] = {{"sphere512", "gen:sphere:512", -0.12f},
-                                       {"gyroid512", "gen:gyroid:512", 1.49f}};
+constexpr Subject kSparseSubjects[] = {{"sphere512", "gen:sphere:512", -0.12f}, {"gyroid512", "gen:gyroid:512", 1.49f}};
 
 /// The volume of a subject, read once; null where its file is not there.
 const Volume* volume_of(const Subject& subject) {
