@@ -146,16 +146,16 @@ void RowMarch::write_and_classify(Layers here, Layers behind, Layers ahead, cons
   const int all = vertices + triangles + ahead.end - ahead.begin;
   parallel_blocks(std::size_t(all), 1, run, "", [&](const Block& block) {
     const int task = int(block.begin);
-    if (task < vertices)
-      for_slabs(here.begin + task, [&](int k) {
-        if (march_.slabs[k].active_words > 0)
-          make_vertices(march_, k, frame_, &mesh.positions.data()->x, &mesh.normals.data()->x);
-      });
-    else if (task < vertices + triangles)
+    if (task < vertices) {
+      if (mesh.positions.empty()) return;
+      for_slabs(here.begin + task,
+                [&](int k) { make_vertices(march_, k, frame_, &mesh.positions[0].x, &mesh.normals[0].x); });
+    } else if (task < vertices + triangles) {
       for_slabs(behind.begin + task - vertices,
                 [&](int k) { make_triangles(march_, k, cases(), mesh.triangles.data()); });
-    else
+    } else {
       classify_layer(ahead.begin + task - vertices - triangles);
+    }
   });
 }
 
