@@ -10,16 +10,6 @@
 namespace isolux {
 namespace {
 
-/// A mesh's vertices lie on grid edges, and the rounding of their world coordinates puts them beside: coordinates
-/// within 1e-4 of a grid plane are put back on it. Elsewhere a shift of so little is beyond what the light tells.
-Vec3f onto_grid(Vec3 index) {
-  for (int a = 0; a < 3; ++a) {
-    const double whole = std::round(index[a]);
-    if (std::fabs(index[a] - whole) < 1e-4) index[a] = whole;
-  }
-  return Vec3f(index);
-}
-
 /// The points that have a normal.
 struct SitesOfPoints {
   Sites sites;
@@ -31,7 +21,7 @@ SitesOfPoints sites_of(const Volume& volume, const Scene& scene, std::span<const
   const TrilinearField field(volume);
   SitesOfPoints result;
   for (std::size_t i = 0; i < world_positions.size(); ++i) {
-    const Vec3f position = onto_grid(volume.lattice().frame.index(Vec3(world_positions[i])));
+    const Vec3f position(volume.lattice().frame.index(Vec3(world_positions[i])));
     const Vec3 normal = field.normal(Vec3(position), scene.outer, gradient);
     if (normal == Vec3(0.0)) continue;
     result.sites.positions.push_back(position);
