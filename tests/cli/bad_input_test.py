@@ -32,6 +32,7 @@ class BadCommandLine(CommandLineTest):
             (("bake", "gen:sphere:8", "-o", "l.nrrd", "--resampler", "cell_grid", "--set", "resampler.kk=3"), "kk"),
             (("bake", "gen:sphere:8", "-o", "l.nrrd", "--resampler", "cell_grid", "--set", "resampler.k=-1"), "k = '-1'"),
             (("bake", "gen:sphere:8", "-o", "l.nrrd", "--set", "oven.k=3"), "resampler"),
+            (("extract", "gen:sphere:8", "-o", "m.fbx", "--iso", "-0.3"), "m.fbx: meshes are written as .ply"),
             (("bake", "gen:sphere:8", "-o", "l.nrrd", "--set", "k"), "key=value"),
             (("bake", "gen:sphere:8", "-o", "l.nrrd", "--threads", "0"), "--threads"),
             (("bake", "x.raw", "-o", "l.nrrd", "--dims", "4x4x4"), "--type"),

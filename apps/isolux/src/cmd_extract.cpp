@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 #include <isolux/bake/light_metadata.h>
 #include <isolux/bake/light_points.h>
+#include <isolux/core/error.h>
 #include <isolux/mc_extract/measure_mesh.h>
 #include <isolux/mc_extract/write_mesh.h>
 #include <isolux/render/image.h>
@@ -89,7 +90,17 @@ Scene scene_for(const Options& options, const std::optional<LightFile>& light) {
   return options.trace.scene();
 }
 
+/// \throw UsageError before any work is done for a mesh that cannot be written.
+void require_output(const std::string& path) {
+  try {
+    require_mesh_extension(path);
+  } catch (const InvalidInput& error) {
+    throw UsageError(fmt::format("--output: {}", error.what()));
+  }
+}
+
 void run_extract(const Options& options, Session& session) {
+  require_output(options.output);
   BackendChoice choice{options.backend, {}};
   apply_settings(options.set, {{"extractor", &choice.settings}});
   require_choice(session.stages.extractors, choice);

@@ -34,14 +34,26 @@ const std::vector<std::string>& mesh_extensions() {
   return extensions;
 }
 
-void write_mesh(const IsoMesh& mesh, std::span<const Rgb8> colours, const std::string& path) {
+namespace {
+/// In lower case, with its dot.
+std::string extension_of(const std::string& path) {
   std::string extension = std::filesystem::path(path).extension().string();
   std::ranges::transform(extension, extension.begin(), [](unsigned char c) { return char(std::tolower(c)); });
+  return extension;
+}
+}  // namespace
+
+void require_mesh_extension(const std::string& path) {
+  if (std::ranges::find(mesh_extensions(), extension_of(path)) == mesh_extensions().end())
+    throw InvalidInput(fmt::format("{}: meshes are written as {}", path, fmt::join(mesh_extensions(), ", ")));
+}
+
+void write_mesh(const IsoMesh& mesh, std::span<const Rgb8> colours, const std::string& path) {
+  require_mesh_extension(path);
+  const std::string extension = extension_of(path);
   if (extension == ".ply") return write_ply(mesh, colours, path);
   if (extension == ".glb") return write_glb(mesh, colours, path);
   if (extension == ".obj") return write_obj(mesh, colours, path);
-  if (std::ranges::find(mesh_extensions(), extension) == mesh_extensions().end())
-    throw InvalidInput(fmt::format("{}: meshes are written as {}", path, fmt::join(mesh_extensions(), ", ")));
   mc::require_colours_fit(mesh, colours);
   mc::write_with_openmesh(mesh, colours, extension, path);
 }

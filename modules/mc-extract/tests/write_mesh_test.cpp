@@ -179,6 +179,8 @@ TEST_F(WriteMesh, AnEmptyMeshIsAFileToo) {
 }
 
 TEST_F(WriteMesh, RefusesWhatItCannotWrite) {
+  EXPECT_THROW(require_mesh_extension("a.fbx"), InvalidInput);
+  for (const std::string& extension : mesh_extensions()) EXPECT_NO_THROW(require_mesh_extension("a" + extension));
   EXPECT_THROW(write_mesh(mesh_, {}, path("a.fbx")), InvalidInput);
   EXPECT_THROW(write_mesh(mesh_, {}, path("ply")), InvalidInput);
   colours_.pop_back();

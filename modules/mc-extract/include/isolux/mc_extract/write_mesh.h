@@ -31,6 +31,10 @@ void write_obj(const IsoMesh& mesh, std::span<const Rgb8> colours, const std::st
 /// and colours) and `.stl` (binary; neither). \throw as write_ply; InvalidInput for another extension.
 void write_mesh(const IsoMesh& mesh, std::span<const Rgb8> colours, const std::string& path);
 
+/// For finding out before the work that write_mesh would refuse a path's extension. \throw InvalidInput naming path and
+/// the extensions there are.
+void require_mesh_extension(const std::string& path);
+
 /// The extensions that write_mesh knows, with their dots.
 [[nodiscard]] const std::vector<std::string>& mesh_extensions();
 
