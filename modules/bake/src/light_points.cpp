@@ -1,7 +1,6 @@
 #include <isolux/bake/light_points.h>
 
 #include <algorithm>
-#include <cmath>
 #include <utility>
 
 #include "residual_filter.h"

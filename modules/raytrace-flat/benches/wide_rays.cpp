@@ -161,88 +161,100 @@ std::vector<Vec3f> hemisphere() {
   return directions;
 }
 
-void embree_occluded8(benchmark::State& state, const Case& test) {
-  const Volume& volume = volume_of(test);
-  const IsoMesh mesh = extractors().create()->extract(volume, {.isovalue = test.isovalue}, {});
-  const EmbreeMesh embree(mesh);
-  const auto points = surface_points(mesh, 50000);
-  const auto directions = hemisphere();
-  const float offset = 1e-4f * float(glm::length(volume.lattice().frame.spacing()));
-  RTCIntersectContext context;
-  rtcInitIntersectContext(&context);
-  context.flags = RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
-  alignas(64) int valid[8] = {-1, -1, -1, -1, -1, -1, -1, -1};
-  std::size_t hits = 0;
-  for (auto _ : state) {
-    hits = 0;
-    for (const SurfacePoint& point : points) {
+/// Embree's part of a case: the mesh, and what is asked of it.
+class EmbreeRays {
+ public:
+  explicit EmbreeRays(const Case& test)
+      : mesh_(extractors().create()->extract(volume_of(test), {.isovalue = test.isovalue}, {})),
+        embree_(mesh_),
+        points_(surface_points(mesh_, 50000)),
+        directions_(hemisphere()),
+        offset_(1e-4f * float(glm::length(volume_of(test).lattice().frame.spacing()))) {
+    rtcInitIntersectContext(&context_);
+    context_.flags = RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
+  }
+
+  [[nodiscard]] RTCScene scene() const { return embree_.scene(); }
+  [[nodiscard]] RTCIntersectContext* context() { return &context_; }
+
+  /// Calls ask(origin, the 64 directions) for every point.
+  template <class Ask>
+  void for_each_point(const Ask& ask) const {
+    Vec3f directions[64];
+    for (const SurfacePoint& point : points_) {
       const Vec3f n = point.normal;
       const float sign = std::copysign(1.0f, n.z);
       const float a = -1.0f / (sign + n.z);
       const float b = n.x * n.y * a;
       const Vec3f x(1.0f + sign * n.x * n.x * a, sign * b, -sign * n.x);
       const Vec3f y(b, sign + n.y * n.y * a, -n.y);
-      const Vec3f o = point.position + offset * n;
+      for (std::size_t i = 0; i < 64; ++i)
+        directions[i] = directions_[i].x * x + directions_[i].y * y + directions_[i].z * n;
+      ask(point.position + offset_ * n, directions);
+    }
+  }
+
+  void report(benchmark::State& state, std::size_t hits) const {
+    const double rays = 64.0 * double(points_.size());
+    state.counters["rays/s"] = benchmark::Counter(rays, benchmark::Counter::kIsIterationInvariantRate);
+    state.counters["hits"] = double(hits) / rays;
+    state.counters["triangles"] = double(mesh_.n_faces());
+  }
+
+ private:
+  IsoMesh mesh_;
+  EmbreeMesh embree_;
+  std::vector<SurfacePoint> points_;
+  std::vector<Vec3f> directions_;
+  float offset_;
+  RTCIntersectContext context_;
+};
+
+void embree_occluded8(benchmark::State& state, const Case& test) {
+  EmbreeRays embree(test);
+  alignas(64) const int valid[8] = {-1, -1, -1, -1, -1, -1, -1, -1};
+  std::size_t hits = 0;
+  for (auto _ : state) {
+    hits = 0;
+    embree.for_each_point([&](const Vec3f& o, const Vec3f* d) {
       for (std::size_t first = 0; first < 64; first += 8) {
         alignas(64) RTCRay8 rays;
         for (std::size_t i = 0; i < 8; ++i) {
-          const Vec3f local = directions[first + i];
-          const Vec3f d = local.x * x + local.y * y + local.z * n;
           rays.org_x[i] = o.x;
           rays.org_y[i] = o.y;
           rays.org_z[i] = o.z;
-          rays.dir_x[i] = d.x;
-          rays.dir_y[i] = d.y;
-          rays.dir_z[i] = d.z;
+          rays.dir_x[i] = d[first + i].x;
+          rays.dir_y[i] = d[first + i].y;
+          rays.dir_z[i] = d[first + i].z;
           rays.tnear[i] = 0.0f;
           rays.tfar[i] = INFINITY;
           rays.time[i] = 0.0f;
           rays.mask[i] = ~0u;
           rays.flags[i] = 0;
         }
-        rtcOccluded8(valid, embree.scene(), &context, &rays);
+        rtcOccluded8(valid, embree.scene(), embree.context(), &rays);
         for (const float far : rays.tfar) hits += std::size_t(far < 0.0f);
       }
-    }
+    });
   }
-  const double rays = 64.0 * double(points.size());
-  state.counters["rays/s"] = benchmark::Counter(rays, benchmark::Counter::kIsIterationInvariantRate);
-  state.counters["hits"] = double(hits) / rays;
-  state.counters["triangles"] = double(mesh.n_faces());
+  embree.report(state, hits);
 }
 
 /// The same rays as a stream, 64 at a time.
 void embree_stream(benchmark::State& state, const Case& test) {
-  const Volume& volume = volume_of(test);
-  const IsoMesh mesh = extractors().create()->extract(volume, {.isovalue = test.isovalue}, {});
-  const EmbreeMesh embree(mesh);
-  const auto points = surface_points(mesh, 50000);
-  const auto directions = hemisphere();
-  const float offset = 1e-4f * float(glm::length(volume.lattice().frame.spacing()));
-  RTCIntersectContext context;
-  rtcInitIntersectContext(&context);
-  context.flags = RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
+  EmbreeRays embree(test);
+  std::size_t hits = 0;
   for (auto _ : state) {
-    for (const SurfacePoint& point : points) {
-      const Vec3f n = point.normal;
-      const float sign = std::copysign(1.0f, n.z);
-      const float a = -1.0f / (sign + n.z);
-      const float b = n.x * n.y * a;
-      const Vec3f x(1.0f + sign * n.x * n.x * a, sign * b, -sign * n.x);
-      const Vec3f y(b, sign + n.y * n.y * a, -n.y);
-      const Vec3f o = point.position + offset * n;
+    hits = 0;
+    embree.for_each_point([&](const Vec3f& o, const Vec3f* d) {
       RTCRay rays[64];
-      for (std::size_t i = 0; i < 64; ++i) {
-        const Vec3f d = directions[i].x * x + directions[i].y * y + directions[i].z * n;
-        rays[i] = {o.x, o.y, o.z, 0.0f, d.x, d.y, d.z, 0.0f, INFINITY, ~0u, 0, 0};
-      }
-      rtcOccluded1M(embree.scene(), &context, rays, 64, sizeof(RTCRay));
-      benchmark::DoNotOptimize(rays[0].tfar);
-    }
+      for (std::size_t i = 0; i < 64; ++i)
+        rays[i] = {o.x, o.y, o.z, 0.0f, d[i].x, d[i].y, d[i].z, 0.0f, INFINITY, ~0u, 0, 0};
+      rtcOccluded1M(embree.scene(), embree.context(), rays, 64, sizeof(RTCRay));
+      for (const RTCRay& ray : rays) hits += std::size_t(ray.tfar < 0.0f);
+    });
   }
-  state.counters["rays/s"] =
-      benchmark::Counter(64.0 * double(points.size()), benchmark::Counter::kIsIterationInvariantRate);
-  state.counters["triangles"] = double(mesh.n_faces());
+  embree.report(state, hits);
 }
 
 #endif
