@@ -36,11 +36,11 @@ std::uint64_t texels_outside(const Volume& volume, const Lattice& texels, const 
   const std::size_t rows = texels.count() / row;
   std::vector<std::uint64_t> outside(rows);
   parallel_blocks(rows, 1, run, "", [&](const Block& block) {
-    const auto y = double(block.index % std::size_t(texels.size.y));
-    const auto z = double(block.index / std::size_t(texels.size.y));
+    const std::size_t y = block.index % std::size_t(texels.size.y);
+    const std::size_t z = block.index / std::size_t(texels.size.y);
     for (std::size_t x = 0; x < row; ++x) {
       // The site's own position is rounded to float, as samplers do.
-      const auto value = float(field.value(Vec3(Vec3f(to_volume.world({double(x), y, z})))));
+      const auto value = float(field.value(Vec3(Vec3f(to_volume.world({double(x), double(y), double(z)})))));
       outside[block.index] += std::uint64_t(value < wanted.low || value > wanted.high);
     }
   });

@@ -49,6 +49,9 @@ class BlockMaker {
 
   [[nodiscard]] LinkBlock make(const GatheredRays& gathered) const {
     const std::size_t words = (request_.rays + 63) / 64;
+    // Kept from block to block: growing each block's own would leave holes of its size in memory.
+    static thread_local std::vector<std::uint32_t> found;
+    found.clear();
     LinkBlock block;
     block.hits.assign(gathered.sites.size() * words, 0);
     block.sites.reserve(gathered.sites.size());
@@ -56,11 +59,11 @@ class BlockMaker {
     for (std::size_t s = 0; s < gathered.sites.size(); ++s) {
       const std::uint32_t site = numbers_.empty() ? gathered.sites[s] : numbers_[gathered.sites[s]];
       block.sites.push_back(site);
-      block.begins.push_back(std::uint32_t(block.targets.size()));
-      if (sites_.normals[site] != Vec3f(0.0f)) add_site(gathered, s, site, &block.hits[s * words], block.targets);
+      block.begins.push_back(std::uint32_t(found.size()));
+      if (sites_.normals[site] != Vec3f(0.0f)) add_site(gathered, s, site, &block.hits[s * words], found);
     }
-    block.begins.push_back(std::uint32_t(block.targets.size()));
-    block.targets.shrink_to_fit();
+    block.begins.push_back(std::uint32_t(found.size()));
+    block.targets.assign(found.begin(), found.end());
     return block;
   }
 
