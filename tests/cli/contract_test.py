@@ -120,6 +120,26 @@ class Bake(CommandLineTest):
     def test_an_error_target_is_met(self):
         self.bake("--rmse", 0.01, "--report", "report.json", volume="gen:two-spheres:12", rays=16)
         self.assertLess(self.report()["rmse_estimate"], 0.0115)
+        self.bake("--rmse", 0.02, "--error-grid", "error.nrrd", "--report", "report.json", volume="gen:gyroid:12")
+        fields, _, data = nrrd_header(self.path("error.nrrd"))
+        self.assertEqual(fields["isolux.quantity"], "standard error of irradiance/pi")
+        errors = struct.unpack("<%df" % 11**3, data)
+        report = self.report()
+        self.assertLess(report["rmse_estimate"], 0.02)
+        self.assertEqual(report["skipped"]["sites_flat"] + report["sites"], 11**3)
+        self.assertGreater(report["rays_a_site"]["most"], report["rays_a_site"]["least"])
+        # Texels without a site repeat their neighbours' errors.
+        self.assertAlmostEqual(math.sqrt(sum(e * e for e in errors) / len(errors)), report["rmse_estimate"], delta=0.004)
+
+    def test_an_error_target_gives_the_same_bytes_for_any_threads(self):
+        self.bake("--rmse", 0.03, "--threads", 1, out="one.nrrd", volume="gen:gyroid:12")
+        self.bake("--rmse", 0.03, "--threads", 3, out="three.nrrd", volume="gen:gyroid:12")
+        self.assertEqual(self.read("one.nrrd"), self.read("three.nrrd"))
+
+    def test_a_time_is_kept(self):
+        self.bake("--time", 0.5, "--report", "report.json", volume="gen:gyroid:16")
+        # A busy machine may stretch the last round.
+        self.assertLess(self.report()["seconds"]["total"], 5)
 
     def test_probe_reads_one_on_a_convex_level_set(self):
         self.bake("--bounces", 0)
