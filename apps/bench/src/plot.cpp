@@ -52,7 +52,11 @@ class Scale {
     return std::clamp(pixel(v), std::min(first_, last_), std::max(first_, last_));
   }
   /// Values that get a line and a number.
-  [[nodiscard]] std::vector<double> ticks() const { return axis_ == Axis::kLog ? decades() : rounds(); }
+  [[nodiscard]] std::vector<double> ticks() const {
+    if (axis_ == Axis::kLinear) return rounds(low_, high_);
+    // Within so little of a decade its usual parts would leave one number or none.
+    return high_ - low_ < 0.5 ? rounds(std::pow(10.0, low_), std::pow(10.0, high_)) : decades();
+  }
 
  private:
   [[nodiscard]] std::vector<double> decades() const {
@@ -71,8 +75,8 @@ class Scale {
     }
     return values;
   }
-  [[nodiscard]] std::vector<double> rounds() const {
-    const double raw = (high_ - low_) / 6.0;
+  [[nodiscard]] static std::vector<double> rounds(double low, double high) {
+    const double raw = (high - low) / 6.0;
     const double power = std::pow(10.0, std::floor(std::log10(raw)));
     double step = 10.0 * power;
     for (const double m : {1.0, 2.0, 5.0}) {
@@ -82,7 +86,7 @@ class Scale {
       }
     }
     std::vector<double> values;
-    for (double n = std::ceil(low_ / step); n * step <= high_; n += 1.0) values.push_back(n * step + 0.0);  // no -0
+    for (double n = std::ceil(low / step); n * step <= high; n += 1.0) values.push_back(n * step + 0.0);  // no -0
     return values;
   }
 
@@ -127,8 +131,8 @@ Frame frame_of(const Plot& plot) {
   for (const Series& series : plot.series) {
     for (const PlotPoint& p : series.points) {
       if (!shown(p.x, plot.x_axis) || !shown(p.y, plot.y_axis)) continue;
-      x_low = std::min(x_low, p.x);
-      x_high = std::max(x_high, p.x);
+      x_low = std::min(x_low, shown(p.left, plot.x_axis) ? p.left : p.x);
+      x_high = std::max(x_high, shown(p.right, plot.x_axis) ? p.right : p.x);
       y_low = std::min(y_low, shown(p.low, plot.y_axis) ? std::max(p.low, 0.3 * p.y) : p.y);
       y_high = std::max(y_high, shown(p.high, plot.y_axis) ? p.high : p.y);
     }
