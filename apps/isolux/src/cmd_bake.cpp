@@ -24,6 +24,7 @@ struct Options {
   double rmse = 0.0;
   double time = 0.0;
   std::string error_grid;
+  int texels_a_cell = 0;
   std::size_t samples = 0;
   std::string sampler;
   std::string resampler;
@@ -43,6 +44,7 @@ BakeSettings bake_settings(const Options& options, const Stages& stages) {
   }
   settings.lattice = options.lattice == "voxels" ? TexelLattice::kVoxels : TexelLattice::kCells;
   if (!options.texels.empty()) settings.texels = parse_size3("--texels", options.texels);
+  settings.texels_a_cell = options.texels_a_cell;
   if (!options.iso_range.empty()) settings.isovalues = parse_range("--iso-range", options.iso_range);
   settings.target_rmse = options.rmse;
   settings.target_seconds = options.time;
@@ -116,6 +118,12 @@ void add_bake_command(CLI::App& program, Session& session) {
       ->type_name("LO:HI");
   command.add_option("--texels", options->texels, "size of the light's grid (default: one texel a cell)")
       ->type_name("NXxNYxNZ");
+  command
+      .add_option(
+          "--texels-a-cell", options->texels_a_cell,
+          "texels a cell on each axis (default 1; 2 for one isovalue): 2 with --resampler fit is the best light")
+      ->check(CLI::Range(1, 8))
+      ->type_name("N");
   command.add_option("--lattice", options->lattice, "texels at the cell centres (default) or at the voxels")
       ->check(CLI::IsMember({"cells", "voxels"}));
   command

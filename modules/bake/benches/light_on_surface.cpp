@@ -118,6 +118,11 @@ const int kRegistered = [] {
       {"fit_4x4", {"stratified", 4, 4, "fit", {}}},
       {"fit_8x2", {"stratified", 8, 2, "fit", {}}},
       {"texels_64_2_an_axis", {"texels", 1, 64, "direct", {}, 2}},
+      {"thesis_kdtree_64", {"random", 1, 64, "cgal_kdtree", kThesis}},
+      {"fit_value_1x64_2_an_axis", {"stratified", 1, 64, "fit", {{"slopes", "false"}}, 2}},
+      {"fit_value_2x64_2_an_axis", {"stratified", 2, 64, "fit", {{"slopes", "false"}}, 2}},
+      {"fit_value_8x8", {"stratified", 8, 8, "fit", {{"slopes", "false"}}}},
+      {"fit_value_8x16", {"stratified", 8, 16, "fit", {{"slopes", "false"}}}},
       {"fit_4x32_2_an_axis", {"stratified", 4, 32, "fit", {}, 2}},
   };
   for (const auto& [name, scheme] : schemes) {

@@ -4,17 +4,20 @@
 #include <isolux/core/parallel.h>
 #include <isolux/resample/resampler.h>
 
+#include <span>
+#include <vector>
+
 #include "shepard.h"
 
 namespace isolux {
 
-/// Fills a grid texel by texel: `search(texel point, found)` puts a texel's neighbours into `found`, nearest first.
-template <class Search>
-ResampledGrid shepard_resample(const Volume& volume, const SampleSet& samples, const Lattice& texels,
-                               const ShepardOptions& options, const ShepardSpace& space, const Search& search,
-                               const Run& run) {
+/// Walks a grid texel by texel: `search(texel point, found)` puts a texel's neighbours into `found`, nearest first, and
+/// `light(index, point, found, texel)` writes the texel's values from them; texels that find none stay unlit.
+template <class Search, class LightTexel>
+ResampledGrid resample_texels(const Volume& volume, const SampleSet& samples, const Lattice& texels,
+                              const ShepardSpace& space, const Search& search, const LightTexel& light,
+                              const Run& run) {
   const TrilinearField field(volume);
-  const ShepardBlend blend(samples, options);
   const IndexToWorld to_volume = index_to_index(texels, volume.lattice());
   const auto nx = std::size_t(texels.size.x);
   const auto ny = std::size_t(texels.size.y);
@@ -27,13 +30,25 @@ ResampledGrid shepard_resample(const Volume& volume, const SampleSet& samples, c
       const std::size_t k = t / (nx * ny);
       const Vec3f index(to_volume.world({double(t % nx), double(j), double(k)}));
       const float isovalue = space.uses_isovalues() ? float(field.value(Vec3(index))) : 0.0f;
-      search(space.point(index, isovalue), found);
+      const Point point = space.point(index, isovalue);
+      search(point, found);
       if (found.empty()) continue;
-      blend(found, &result.grid.values[t * std::size_t(samples.channels)]);
+      light(index, point, std::span<const Neighbour>(found), &result.grid.values[t * std::size_t(samples.channels)]);
       result.lit[t] = 1;
     }
   });
   return result;
+}
+
+/// Fills a grid by Shepard's weights.
+template <class Search>
+ResampledGrid shepard_resample(const Volume& volume, const SampleSet& samples, const Lattice& texels,
+                               const ShepardOptions& options, const ShepardSpace& space, const Search& search,
+                               const Run& run) {
+  const ShepardBlend blend(samples, options);
+  const auto light = [&](const Vec3f& /*index*/, const Point& /*point*/, std::span<const Neighbour> found,
+                         float* texel) { blend(found, texel); };
+  return resample_texels(volume, samples, texels, space, search, light, run);
 }
 
 }  // namespace isolux

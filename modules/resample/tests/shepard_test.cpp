@@ -197,8 +197,9 @@ TEST_P(Shepard, TellsLevelSetsApartByIsovalue) {
   const Volume volume = make_volume({9, 9, 9}, Vec3(1.0), [](const Vec3& p) { return 100.0 * p.x; });
   SampleSet samples;
   for (int q = 0; q < 64; ++q) {
-    add_sample(samples, volume, {3.5, 0.5 + q % 8, 0.5 + q / 8}, {1.0f});
-    add_sample(samples, volume, {4.0, 0.5 + q % 8, 0.5 + q / 8}, {9.0f});
+    const int row = q / 8;
+    add_sample(samples, volume, {3.5, 0.5 + q % 8, 0.5 + row}, {1.0f});
+    add_sample(samples, volume, {4.0, 0.5 + q % 8, 0.5 + row}, {9.0f});
   }
   // The texels at 3.7 have the sheets .2 and .3 of a voxel away, or 20 and 30 once the whole range counts 800.
   const Lattice texels = cell_lattice(volume.lattice(), {40, 8, 8});

@@ -50,8 +50,8 @@ inline SampleSet random_samples(const Volume& volume, std::size_t count, int cha
     RandomStream random(seed, s);
     Vec3 p;
     for (int a = 0; a < 3; ++a) p[a] = random.uniform_float() * float(volume.lattice().size[a] - 1);
-    std::vector<float> radiance;
-    for (int c = 0; c < channels; ++c) radiance.push_back(light(p, c));
+    std::vector<float> radiance(std::size_t(channels), 0.0f);
+    for (int c = 0; c < channels; ++c) radiance[std::size_t(c)] = light(p, c);
     add_sample(set, volume, p, radiance);
   }
   return set;

@@ -41,27 +41,16 @@ class MovingLeastSquares final : public Resampler {
     const ShepardSpace space(volume, samples, neighbours);
     const SampleBins bins(space.samples(), space.far_corner(), 1.0);
     const TrilinearField field(volume);
-    const IndexToWorld to_volume = index_to_index(texels, volume.lattice());
-    const auto nx = std::size_t(texels.size.x);
-    const auto ny = std::size_t(texels.size.y);
-    ResampledGrid result{.grid = IlluminationGrid(texels, samples.channels),
-                         .lit = std::vector<std::uint8_t>(texels.count(), 1)};
-    parallel_blocks(texels.count(), 512, run, "resample", [&](const Block& block) {
-      std::vector<Neighbour> found;
-      for (std::size_t t = block.begin; t < block.end; ++t) {
-        const std::size_t j = t / nx % ny;
-        const std::size_t k = t / (nx * ny);
-        const Vec3f index(to_volume.world({double(t % nx), double(j), double(k)}));
-        const float isovalue = space.uses_isovalues() ? float(field.value(Vec3(index))) : 0.0f;
-        const Point query = space.point(index, isovalue);
-        bins.search<EuclideanMetric>(query, space.limits(), found);
-        const Vec3 normal = options_.normal_power > 0.0
-                                ? field.world_gradient(Vec3(index), GradientKind::kCentralDifferences)
-                                : Vec3(0.0);
-        fit_texel(samples, space, query, normal, found, &result.grid.values[t * std::size_t(samples.channels)]);
-      }
-    });
-    return result;
+    const auto search = [&](const Point& query, std::vector<Neighbour>& found) {
+      bins.search<EuclideanMetric>(query, space.limits(), found);
+    };
+    const auto light = [&](const Vec3f& index, const Point& query, std::span<const Neighbour> found, float* texel) {
+      const Vec3 normal = options_.normal_power > 0.0
+                              ? field.world_gradient(Vec3(index), GradientKind::kCentralDifferences)
+                              : Vec3(0.0);
+      fit_texel(samples, space, query, normal, found, texel);
+    };
+    return resample_texels(volume, samples, texels, space, search, light, run);
   }
 
  private:

@@ -1,0 +1,162 @@
+// Is few rays' light, fitted, as good as many rays' at the texels, at the edges of shadows too, and does light leak
+// through thin walls? Every scheme lights all level sets of a scene; e is read at random points of some and compared
+// with 1024 rays there, or with the exact answer where there is one. Counters: rms error and bias where light changes
+// slowly, rms error within 1.5 voxels of a shadow's edge.
+#include <benchmark/benchmark.h>
+
+#include <functional>
+#include <glm/geometric.hpp>
+
+#include "surface_cases.h"
+
+namespace {
+
+using namespace isolux;
+using namespace isolux::bench;
+
+/// A scene on the unit cube, what is known of its light, and where the edges of its shadows are.
+struct Subject {
+  Volume volume;
+  Scene scene;
+  std::vector<float> isovalues;
+  std::function<double(const Vec3&)> exact;  ///< of world points; empty: traced
+  std::function<bool(const Vec3&)> on_edge;  ///< of world points; empty: nowhere
+};
+
+Subject half_lit_ball() {
+  Subject s{.volume = read_volume("gen:sphere:32"),
+            .scene = {},
+            .isovalues = {-0.2f, -0.3f, -0.4f},
+            .exact = {},
+            .on_edge = {}};
+  s.scene.environment = SkyEnvironment{.zenith = Vec3f(1.0f), .horizon = Vec3f(1.0f), .ground = Vec3f(0.0f)};
+  s.exact = [](const Vec3& p) { return 0.5 + 0.5 * glm::normalize(p - Vec3(0.5)).z; };
+  return s;
+}
+
+Subject two_balls() {
+  return {.volume = read_volume("gen:two-spheres:32"),
+          .scene = {},
+          .isovalues = {-0.1f, -0.15f, -0.19f},
+          .exact = {},
+          .on_edge = {}};
+}
+
+Subject ball_in_the_sun() {
+  Subject s{.volume = read_volume("gen:ball-over-plane:48"),
+            .scene = {},
+            .isovalues = {-0.05f, -0.1f, -0.15f},
+            .exact = {},
+            .on_edge = {}};
+  const Vec3 sun = glm::normalize(Vec3(0.2, 0.1, 1.0));
+  s.scene.environment = UniformEnvironment{.radiance = Vec3f(0.2f)};
+  s.scene.lights = {SunLight{.direction = Vec3f(sun), .irradiance = Vec3f(2.5f)}};
+  s.on_edge = [sun](const Vec3& p) {
+    // On the plane z = -h a point is in the shadow of the ball of radius .1 - h.
+    const Vec3 to_centre = Vec3(0.5) - p;
+    const double beside = glm::length(to_centre - glm::dot(to_centre, sun) * sun);
+    return std::fabs(beside - (0.1 + p.z)) < 1.5 / 47.0;
+  };
+  return s;
+}
+
+/// Two sheets one and a half voxels apart at most: the upper one in the light, the lower one in the dark.
+Subject two_sheets() {
+  Subject s{.volume = read_volume("gen:sphere:32"),
+            .scene = {},
+            .isovalues = {-0.6f, -0.4f, -0.25f},
+            .exact = {},
+            .on_edge = {}};
+  const auto height = [](const Vec3& index) { return index.z - 15.3 - 0.13 * (index.x - 15.0); };
+  for (int k = 0; k < 32; ++k)
+    for (int j = 0; j < 32; ++j)
+      for (int i = 0; i < 32; ++i) s.volume.values(i, j, k) = -float(std::fabs(height(Vec3(i, j, k))));
+  s.scene.environment = SkyEnvironment{
+      .up = Vec3f(-0.13f, 0.0f, 1.0f), .zenith = Vec3f(1.0f), .horizon = Vec3f(1.0f), .ground = Vec3f(0.0f)};
+  return s;
+}
+
+struct Truth {
+  SampleSet points;
+  std::vector<std::uint8_t> on_edge;
+};
+
+SampleSet trace_in(const Subject& subject, Sites sites, int rays, std::uint64_t seed) {
+  return tracers()
+      .create()
+      ->trace(subject.volume, subject.scene, std::move(sites), {.rays = rays, .bounces = 0}, {.seed = seed})
+      .samples;
+}
+
+Truth truth_of(const Subject& subject) {
+  std::vector<Vec3f> points;
+  for (const float h : subject.isovalues) {
+    const std::vector<Vec3f> more = surface_points(subject.volume, h, 2000, 11);
+    points.insert(points.end(), more.begin(), more.end());
+  }
+  Truth truth{.points = trace_in(subject, make_sites(subject.volume, std::move(points), {}, {}), kReferenceRays, 77),
+              .on_edge = {}};
+  for (std::size_t i = 0; i < truth.points.size(); ++i) {
+    const Vec3 world = subject.volume.lattice().frame.world(Vec3(truth.points.sites.positions[i]));
+    if (subject.exact) truth.points.radiance[i] = float(subject.exact(world));
+    truth.on_edge.push_back(subject.on_edge && subject.on_edge(world) ? 1 : 0);
+  }
+  return truth;
+}
+
+struct Scheme {
+  std::string sampler;
+  double sites;  ///< a texel
+  int rays;
+  std::string resampler;
+};
+
+void edges(benchmark::State& state, const std::function<Subject()>& make, const Scheme& scheme) {
+  const Subject subject = make();
+  const Truth truth = truth_of(subject);
+  const Lattice texels = cell_lattice(subject.volume.lattice());
+  double sums[2] = {0.0, 0.0};
+  double squares[2] = {0.0, 0.0};
+  double counts[2] = {0.0, 0.0};
+  for (auto _ : state) {
+    const SiteRequest request{.texels = texels, .per_texel = scheme.sites};
+    const SampleSet samples = trace_in(
+        subject, samplers().create(scheme.sampler)->sample(subject.volume, request, {.seed = 3}), scheme.rays, 5);
+    const IlluminationGrid light =
+        fill_unlit(resamplers().create(scheme.resampler)->resample(subject.volume, samples, texels, {}), {});
+    const LightReader reader(subject.volume, light);
+    for (std::size_t i = 0; i < truth.points.size(); ++i) {
+      const Sites& at = truth.points.sites;
+      const double e = double(reader.at_index(Vec3(at.positions[i]), double(at.isovalues[i])).x);
+      const double d = e - double(truth.points.radiance[i]);
+      sums[truth.on_edge[i]] += d;
+      squares[truth.on_edge[i]] += d * d;
+      counts[truth.on_edge[i]] += 1.0;
+    }
+  }
+  state.counters["smooth"] = std::sqrt(squares[0] / counts[0]);
+  state.counters["bias"] = sums[0] / counts[0];
+  if (counts[1] > 0.0) state.counters["edge"] = std::sqrt(squares[1] / counts[1]);
+}
+
+const int kRegistered = [] {
+  const std::vector<std::pair<std::string, std::function<Subject()>>> subjects{{"half_lit_ball", half_lit_ball},
+                                                                               {"two_balls", two_balls},
+                                                                               {"ball_in_the_sun", ball_in_the_sun},
+                                                                               {"two_sheets", two_sheets}};
+  const std::vector<std::pair<std::string, Scheme>> schemes{{"texels_16", {"texels", 1, 16, "direct"}},
+                                                            {"texels_128", {"texels", 1, 128, "direct"}},
+                                                            {"fit_8x2", {"stratified", 8, 2, "fit"}},
+                                                            {"fit_4x4", {"stratified", 4, 4, "fit"}},
+                                                            {"fit_8x16", {"stratified", 8, 16, "fit"}}};
+  for (const auto& [subject, make] : subjects) {
+    for (const auto& [name, scheme] : schemes) {
+      benchmark::RegisterBenchmark(("edges/" + subject + "/" + name).c_str(), edges, make, scheme)
+          ->Unit(benchmark::kMillisecond)
+          ->Iterations(1);
+    }
+  }
+  return int(schemes.size());
+}();
+
+}  // namespace
