@@ -109,6 +109,7 @@ struct Scheme {
   double sites;  ///< a texel
   int rays;
   std::string resampler;
+  Settings settings;
 };
 
 void edges(benchmark::State& state, const std::function<Subject()>& make, const Scheme& scheme) {
@@ -122,8 +123,8 @@ void edges(benchmark::State& state, const std::function<Subject()>& make, const 
     const SiteRequest request{.texels = texels, .per_texel = scheme.sites};
     const SampleSet samples = trace_in(
         subject, samplers().create(scheme.sampler)->sample(subject.volume, request, {.seed = 3}), scheme.rays, 5);
-    const IlluminationGrid light =
-        fill_unlit(resamplers().create(scheme.resampler)->resample(subject.volume, samples, texels, {}), {});
+    const IlluminationGrid light = fill_unlit(
+        resamplers().create(scheme.resampler, scheme.settings)->resample(subject.volume, samples, texels, {}), {});
     const LightReader reader(subject.volume, light);
     for (std::size_t i = 0; i < truth.points.size(); ++i) {
       const Sites& at = truth.points.sites;
@@ -144,11 +145,11 @@ const int kRegistered = [] {
                                                                                {"two_balls", two_balls},
                                                                                {"ball_in_the_sun", ball_in_the_sun},
                                                                                {"two_sheets", two_sheets}};
-  const std::vector<std::pair<std::string, Scheme>> schemes{{"texels_16", {"texels", 1, 16, "direct"}},
-                                                            {"texels_128", {"texels", 1, 128, "direct"}},
-                                                            {"fit_8x2", {"stratified", 8, 2, "fit"}},
-                                                            {"fit_4x4", {"stratified", 4, 4, "fit"}},
-                                                            {"fit_8x16", {"stratified", 8, 16, "fit"}}};
+  const Settings denoise{{"denoise", "true"}};
+  const std::vector<std::pair<std::string, Scheme>> schemes{
+      {"texels_16", {"texels", 1, 16, "direct", {}}},   {"texels_16_denoised", {"texels", 1, 16, "direct", denoise}},
+      {"texels_128", {"texels", 1, 128, "direct", {}}}, {"texels_128_denoised", {"texels", 1, 128, "direct", denoise}},
+      {"fit_4x4", {"stratified", 4, 4, "fit", {}}},     {"fit_8x16", {"stratified", 8, 16, "fit", {}}}};
   for (const auto& [subject, make] : subjects) {
     for (const auto& [name, scheme] : schemes) {
       benchmark::RegisterBenchmark(("edges/" + subject + "/" + name).c_str(), edges, make, scheme)

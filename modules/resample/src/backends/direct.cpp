@@ -6,6 +6,7 @@
 #include <cmath>
 #include <optional>
 
+#include "denoise.h"
 #include "samples.h"
 
 namespace isolux::backends {
@@ -27,12 +28,25 @@ std::optional<std::size_t> texel_at(const Lattice& texels, const Vec3& at) {
 
 class Direct final : public Resampler {
  public:
-  using Options = NoOptions;
-  explicit Direct(const Options& /*options*/) {}
+  struct Options {
+    bool denoise = false;
+
+    void describe(OptionVisitor& option) {
+      option("denoise", denoise, {.help = "take the rays' noise out where the samples around say that it is noise"});
+    }
+  };
+  explicit Direct(const Options& options) : options_(options) {}
 
   ResampledGrid resample(const Volume& volume, const SampleSet& samples, const Lattice& texels,
                          const Run& run) const override {
     require_samples(samples);
+    return options_.denoise ? place(volume, denoised(volume, samples, run), texels, run)
+                            : place(volume, samples, texels, run);
+  }
+
+ private:
+  [[nodiscard]] static ResampledGrid place(const Volume& volume, const SampleSet& samples, const Lattice& texels,
+                                           const Run& run) {
     const IndexToWorld to_texels = index_to_index(volume.lattice(), texels);
     const auto channels = std::size_t(samples.channels);
     ResampledGrid result{.grid = IlluminationGrid(texels, samples.channels),
@@ -59,7 +73,6 @@ class Direct final : public Resampler {
     return result;
   }
 
- private:
   /// Texels with several samples get their mean.
   static void add_repeated(const SampleSet& samples, const IndexToWorld& to_texels,
                            const std::vector<std::size_t>& repeated, IlluminationGrid& grid) {
@@ -75,6 +88,8 @@ class Direct final : public Resampler {
       }
     }
   }
+
+  Options options_;
 };
 
 }  // namespace
