@@ -1,12 +1,13 @@
 #include "resampling_choice.h"
 
+#include <cmath>
+
 namespace isolux {
 namespace {
 
 // docs/resampling.md has the curves behind these.
-constexpr double kFitSites = 8.0;
-constexpr double kRangeSites = 4.0;
-constexpr double kOneIsovalueSites = 8.0;
+constexpr double kFitSites = 8.0;   // a texel and cell
+constexpr double kFineSites = 2.0;  // a texel
 constexpr int kOneIsovalueTexels = 2;
 /// A cell that a level set only just cuts may get no site; its texels are next to lit ones.
 constexpr int kFilledLayers = 2;
@@ -32,10 +33,12 @@ void choose_resampling(BakeSettings& settings) {
   if (settings.resampler.name.empty())
     settings.resampler.name = settings.sampler.name == "texels" ? "direct" : "cell_grid";
   if (settings.texels_a_cell == 0) settings.texels_a_cell = fit && one_isovalue(settings) ? kOneIsovalueTexels : 1;
-  // All sites of one isovalue say nothing of how light changes with it.
-  if (fit && one_isovalue(settings)) settings.resampler.settings.try_emplace("slopes", "false");
-  if (settings.sites_a_cell == 0.0 && fit) {
-    settings.sites_a_cell = one_isovalue(settings) ? kOneIsovalueSites : settings.isovalues ? kRangeSites : kFitSites;
+  if (!fit) return;
+  // Finer texels tell level sets apart themselves; all sites of one isovalue say nothing of how light changes with it.
+  const bool fine = settings.texels_a_cell > 1;
+  if (fine || one_isovalue(settings)) settings.resampler.settings.try_emplace("slopes", "false");
+  if (settings.sites_a_cell == 0.0) {
+    settings.sites_a_cell = fine ? kFineSites * std::pow(settings.texels_a_cell, 3) : kFitSites;
   }
 }
 
