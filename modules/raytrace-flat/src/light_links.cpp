@@ -6,12 +6,12 @@
 #include <algorithm>
 #include <limits>
 #include <map>
+#include <optional>
 #include <utility>
-#include <variant>
 
 #include "anderson.h"
-#include "environment.h"
 #include "link_rounds.h"
+#include "ray_values.h"
 #include "trace_counters.h"
 #include "wide/aimer.h"
 #include "wide/net_mean.h"
@@ -21,48 +21,6 @@ namespace {
 
 constexpr std::size_t kSitesABlock = 8192;
 constexpr std::size_t kBlocksATask = 4;
-
-/// What the rays of one site bring, ray by ray.
-class RayValues {
- public:
-  RayValues(const Scene& scene, std::span<const float> e, int channels)
-      : scene_(scene),
-        e_(e),
-        channels_(std::size_t(channels)),
-        environment_(scene.environment),
-        uniform_(std::get_if<UniformEnvironment>(&scene.environment)) {}
-
-  [[nodiscard]] bool wants_directions() const { return uniform_ == nullptr; }
-
-  /// `world` holds the directions of the site's rays where they are wanted.
-  void fill(const LinkRound& round, const LinkBlock& block, std::size_t place, float isovalue,
-            const wide::Directions& world, std::vector<Vec3>& values) const {
-    const Vec3 albedo(scene_.albedo.at(isovalue));
-    const Vec3 emission(scene_.emission.at(isovalue));
-    const std::uint32_t* target = block.targets.data() + block.begins[place];
-    for (std::size_t k = 0; k < round.rays; ++k) {
-      if (round.hit(block, place, k)) {
-        values[k] = e_.empty() ? emission : emission + albedo * light_at(*target++);
-      } else if (uniform_ != nullptr) {
-        values[k] = Vec3(uniform_->radiance);
-      } else {
-        values[k] = environment_.radiance({world.axis[0][k], world.axis[1][k], world.axis[2][k]});
-      }
-    }
-  }
-
- private:
-  [[nodiscard]] Vec3 light_at(std::uint32_t target) const {
-    const float* e = &e_[target * channels_];
-    return channels_ == 1 ? Vec3(double(e[0])) : Vec3(e[0], e[1], e[2]);
-  }
-
-  const Scene& scene_;
-  std::span<const float> e_;
-  std::size_t channels_;
-  PreparedEnvironment environment_;
-  const UniformEnvironment* uniform_;
-};
 
 }  // namespace
 
@@ -218,8 +176,8 @@ SampleSet LightLinks::lamp_light(const Scene& scene, const SolveSettings& settin
   return samples;
 }
 
-void LightLinks::add_up(const Scene& scene, const SampleSet& lamps, std::span<const float> e, SampleSet& samples,
-                        const Run& run) const {
+void LightLinks::add_up(const Scene& scene, const SampleSet& lamps, std::span<const float> e, Want want,
+                        SampleSet& samples, const Run& run) const {
   const auto channels = std::size_t(lamps.channels);
   const RayValues brought(scene, e, lamps.channels);
   samples.sites = sites_;
@@ -237,6 +195,11 @@ void LightLinks::add_up(const Scene& scene, const SampleSet& lamps, std::span<co
         const LinkBlock& block = round.blocks[b];
         for (std::size_t place = 0; place < block.sites.size(); ++place) {
           const std::size_t site = block.sites[place];
+          if (const auto sum =
+                  want == Want::kLight ? brought.sum(round, block, place, sites_.isovalues[site]) : std::nullopt) {
+            for (std::size_t c = 0; c < channels; ++c) samples.radiance[site * channels + c] += float((*sum)[int(c)]);
+            continue;
+          }
           // The directions are a function of seed and site: they are made again, not kept.
           batch.rays.count = 0;
           if (brought.wants_directions()) aimer.append(sites_, site, batch.rays, batch.world);
@@ -279,17 +242,18 @@ Solution LightLinks::solve(const Scene& scene, const SolveSettings& settings, co
     throw InvalidInput(fmt::format("bounces = {}: links whose ends were dropped allow 0", settings.bounces));
   Solution solution;
   const SampleSet lamps = lamp_light(scene, settings, solution.counters, run);
-  add_up(scene, lamps, {}, solution.samples, run);
+  add_up(scene, lamps, {}, settings.bounces == 0 ? Want::kVariance : Want::kLight, solution.samples, run);
   std::vector<float> light;
   if (settings.bounces != 0) {
     const SampleSet straight = std::move(solution.samples);
     light = Solver(*this, scene, straight, to_grid, run).before_last(settings, start, solution);
     // The last reflection with what it takes to know its noise; the probes see the same light with other rays.
-    add_up(scene, lamps, light, solution.samples, run);
+    add_up(scene, lamps, light, Want::kVariance, solution.samples, run);
   }
   if (again_ == nullptr) return solution;
   SampleSet again;
-  again_->add_up(scene, again_->lamp_light(scene, settings, solution.counters, run), light, again, run);
+  again_->add_up(scene, again_->lamp_light(scene, settings, solution.counters, run), light, Want::kVariance, again,
+                 run);
   wide::calibrate_variance(solution.samples, probes_, again, rays_);
   return solution;
 }

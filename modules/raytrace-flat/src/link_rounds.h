@@ -6,6 +6,7 @@
 #include <isolux/core/volume.h>
 #include <isolux/raytrace_flat/gather.h>
 
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -38,6 +39,13 @@ struct LinkRound {
   [[nodiscard]] std::size_t words() const { return (rays + 63) / 64; }
   [[nodiscard]] bool hit(const LinkBlock& block, std::size_t site, std::size_t ray) const {
     return (block.hits[site * words() + ray / 64] >> ray % 64 & 1) != 0;
+  }
+  /// How many of a site's rays hit.
+  [[nodiscard]] std::size_t hits(const LinkBlock& block, std::size_t site) const {
+    std::size_t count = 0;
+    for (std::size_t w = site * words(); w < (site + 1) * words(); ++w)
+      count += std::size_t(std::popcount(block.hits[w]));
+    return count;
   }
 };
 

@@ -1,0 +1,70 @@
+#pragma once
+
+#include <isolux/core/vec.h>
+#include <isolux/raytrace_flat/scene.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <variant>
+#include <vector>
+
+#include "environment.h"
+#include "link_rounds.h"
+#include "wide/hemisphere.h"
+
+namespace isolux {
+
+/// What the rays of one site bring, ray by ray.
+class RayValues {
+ public:
+  RayValues(const Scene& scene, std::span<const float> e, int channels)
+      : scene_(scene),
+        e_(e),
+        channels_(std::size_t(channels)),
+        environment_(scene.environment),
+        uniform_(std::get_if<UniformEnvironment>(&scene.environment)) {}
+
+  [[nodiscard]] bool wants_directions() const { return uniform_ == nullptr; }
+
+  /// The sum over the site's rays where it is known without looking at each: light without reflections under a uniform
+  /// environment.
+  [[nodiscard]] std::optional<Vec3> sum(const LinkRound& round, const LinkBlock& block, std::size_t place,
+                                        float isovalue) const {
+    if (uniform_ == nullptr || !e_.empty()) return std::nullopt;
+    const double hits = double(round.hits(block, place));
+    return (double(round.rays) - hits) * Vec3(uniform_->radiance) + hits * Vec3(scene_.emission.at(isovalue));
+  }
+
+  /// `world` holds the directions of the site's rays where they are wanted.
+  void fill(const LinkRound& round, const LinkBlock& block, std::size_t place, float isovalue,
+            const wide::Directions& world, std::vector<Vec3>& values) const {
+    const Vec3 albedo(scene_.albedo.at(isovalue));
+    const Vec3 emission(scene_.emission.at(isovalue));
+    const std::uint32_t* target = block.targets.data() + block.begins[place];
+    for (std::size_t k = 0; k < round.rays; ++k) {
+      if (round.hit(block, place, k)) {
+        values[k] = e_.empty() ? emission : emission + albedo * light_at(*target++);
+      } else if (uniform_ != nullptr) {
+        values[k] = Vec3(uniform_->radiance);
+      } else {
+        values[k] = environment_.radiance({world.axis[0][k], world.axis[1][k], world.axis[2][k]});
+      }
+    }
+  }
+
+ private:
+  [[nodiscard]] Vec3 light_at(std::uint32_t target) const {
+    const float* e = &e_[target * channels_];
+    return channels_ == 1 ? Vec3(double(e[0])) : Vec3(e[0], e[1], e[2]);
+  }
+
+  const Scene& scene_;
+  std::span<const float> e_;
+  std::size_t channels_;
+  PreparedEnvironment environment_;
+  const UniformEnvironment* uniform_;
+};
+
+}  // namespace isolux
