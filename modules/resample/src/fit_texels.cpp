@@ -61,7 +61,9 @@ void FitTexels::measure(const Volume& volume, const Run& run) {
   parallel_blocks(size(), 4096, run, "", [&](const Block& block) {
     for (std::size_t n = block.begin; n < block.end; ++n) {
       const std::size_t t = offsets_[n];
-      const Vec3 centre = to_volume.world({double(t % nx), double(t / nx % ny), double(t / (nx * ny))});
+      const std::size_t j = t / nx % ny;
+      const std::size_t k = t / (nx * ny);
+      const Vec3 centre = to_volume.world({double(t % nx), double(j), double(k)});
       isovalues_[n] = float(field.value(centre));
       if (slope_terms_ == SlopeTerms::kNone) continue;
       // The voxels of the cells that the texel's linear tent touches.
