@@ -159,6 +159,7 @@ TEST(Bake, FitsKnownIsovaluesAloneAndInBricks) {
   for (const ValueRange range : {ValueRange{-0.3f, -0.3f}, ValueRange{-0.32f, -0.28f}}) {
     BakeSettings settings;
     settings.isovalues = range;
+    settings.resampler.name = "fit";
     settings.trace.rays = 16;
     settings.trace.bounces = 0;
     const LightFile light =

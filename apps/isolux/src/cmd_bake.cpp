@@ -98,9 +98,7 @@ void run_bake(const Options& options, Session& session) {
                   {.compress = options.compress});
     }
     const LightFile light = make_light_file(std::move(result), volume, scene, settings, session.run);
-    // Where the level sets are known most texels are 0: gzip leaves little of them.
-    const bool sparse = settings.isovalues && settings.resampler.name == "fit";
-    write_light(light, options.output, volume.space, {.compress = options.compress || sparse});
+    write_light(light, options.output, volume.space, {.compress = options.compress});
   });
 }
 
@@ -113,15 +111,16 @@ void add_bake_command(CLI::App& program, Session& session) {
   command.add_option("-o,--output", options->output, "the light to write")->required()->type_name("LIGHT.nrrd");
   options->trace.add_to(command);
   command
-      .add_option("--iso-range", options->iso_range,
-                  "light only these level sets, more accurately: LO:HI, or H:H for one")
+      .add_option(
+          "--iso-range", options->iso_range,
+          "light only these level sets: LO:HI, or H:H for one; with --resampler fit more accurately than all at once")
       ->type_name("LO:HI");
   command.add_option("--texels", options->texels, "size of the light's grid (default: one texel a cell)")
       ->type_name("NXxNYxNZ");
   command
-      .add_option(
-          "--texels-a-cell", options->texels_a_cell,
-          "texels a cell on each axis (default 1; 2 for one isovalue): 2 with --resampler fit is the best light")
+      .add_option("--texels-a-cell", options->texels_a_cell,
+                  "texels a cell on each axis (default 1; with --resampler fit 2 for one isovalue): 2 with the fit is "
+                  "the best light")
       ->check(CLI::Range(1, 8))
       ->type_name("N");
   command.add_option("--lattice", options->lattice, "texels at the cell centres (default) or at the voxels")
@@ -151,7 +150,7 @@ void add_bake_command(CLI::App& program, Session& session) {
                   "an option of a backend: sampler.KEY=VALUE, tracer.KEY=VALUE or resampler.KEY=VALUE")
       ->type_name("stage.key=value");
   command.add_flag("--compress", options->compress,
-                   "gzip the light (always where --iso-range leaves most of it empty)");
+                   "gzip the light (--iso-range with --resampler fit leaves most of it empty)");
   session.add_common_options(command);
   command.callback([options, &session] { session.on_run([options, &session] { run_bake(*options, session); }); });
 }

@@ -19,9 +19,6 @@ bool one_isovalue(const BakeSettings& settings) {
 }  // namespace
 
 void choose_resampling(BakeSettings& settings) {
-  const bool free_choice = settings.sampler.name.empty() && settings.resampler.name.empty();
-  const bool known_levels = settings.isovalues && settings.lattice == TexelLattice::kCells;
-  if (free_choice && known_levels) settings.resampler.name = "fit";
   const bool fit = settings.resampler.name == "fit";
   if (settings.sampler.name.empty()) {
     if (fit) {

@@ -70,9 +70,9 @@ struct BakeResult {
 };
 
 /// `settings` with every backend named and what they want filled in (docs/resampling.md): sites at the texels and the
-/// direct resampler; where the isovalues are known, sites on their level sets and a least-squares fit, for one isovalue
-/// of two texels an axis; where a number of samples or another sampler is asked for, low-discrepancy sites and
-/// Shepard's interpolation over a cell grid; the default tracer.
+/// direct resampler; for the least-squares fit stratified sites, or with known isovalues sites on their level sets, and
+/// for one isovalue two texels an axis; where a number of samples or another sampler is asked for, low-discrepancy
+/// sites and Shepard's interpolation over a cell grid; the default tracer.
 [[nodiscard]] BakeSettings with_defaults(BakeSettings settings, const Stages& stages);
 
 /// Lights all level sets of a volume at once, with_defaults(). The same bits for any number of threads.
