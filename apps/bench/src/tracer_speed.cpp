@@ -57,11 +57,13 @@ TracerSpeed tracer_speed(const std::string& tracer, const Volume& volume, float 
   std::vector<double> setups;
   for (int i = 0; i < 3; ++i) setups.push_back(once(few));
   speed.setup_seconds = median(setups).value;
-  const auto beyond_setup = [&](const Sites& sites) { return std::max(once(sites) - speed.setup_seconds, 1e-4); };
+  const auto beyond_setup = [&](const Sites& sites) {
+    return std::max(once(sites) - speed.setup_seconds, 0.1 * speed.setup_seconds);
+  };
   std::size_t count = 2048;
   for (const double part : {0.05, 0.15}) {
-    // Rays have to take at least as long as what is subtracted, or its noise is all that is left.
-    const double wanted_seconds = std::max(part * seconds, speed.setup_seconds);
+    // Rays have to take about as long as what is subtracted, or its noise is all that is left.
+    const double wanted_seconds = std::max(part * seconds, std::min(speed.setup_seconds, 0.3 * seconds));
     const std::size_t wanted = grown(count, beyond_setup(dense.some(count)), wanted_seconds);
     count = std::clamp<std::size_t>(wanted, count, 4u << 20);
   }
