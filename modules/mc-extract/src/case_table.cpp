@@ -41,10 +41,11 @@ CellCase make_case(int inside, CaseTable::Winding winding) {
   for (int e = 0; e < 12; ++e) {
     // Edges along y and z lie in pairs on their row: the one at the lower x, even, comes first.
     const int first = e < 4 ? e : e & ~1;
-    result.step[e] = std::uint32_t(crossed >> first & 1);
-    result.offset[e] = e == first ? 0 : result.step[e];
+    result.step[e] = std::uint8_t(crossed >> first & 1);
+    result.offset[e] = e == first ? std::uint8_t(0) : result.step[e];
   }
-  for (int f = 0; f < 6; ++f) result.segments[f] = std::uint8_t(face_segments(inside, f));
+  for (int f = 0; f < 6; ++f) result.half_step[f] = std::uint8_t(2 * face_segments(inside, f));
+  result.half_offset[1] = result.half_step[1] = result.half_step[0];
   const std::vector<CellPolygon> polygons = cell_polygons(inside, 0);
   EdgePlaces places = places_on_faces(polygons);
   for (const CellPolygon& polygon : polygons) {
@@ -52,7 +53,7 @@ CellCase make_case(int inside, CaseTable::Winding winding) {
       if (winding == CaseTable::Winding::kInwards) std::swap(triangle[1], triangle[2]);
       for (int i = 0; i < 3; ++i) {
         const std::size_t corner = std::size_t(3) * result.triangles + std::size_t(i);
-        assert(corner < result.vertex.size());
+        assert(corner < 15);
         result.vertex[corner] = std::uint8_t(triangle[i]);
         if (triangle[i] % 4 == 0) result.owned[triangle[i] / 4] = std::int8_t(corner);
         const auto [place, is_new] = places.try_emplace(unordered(triangle[i], triangle[(i + 1) % 3]),
@@ -65,13 +66,22 @@ CellCase make_case(int inside, CaseTable::Winding winding) {
       ++result.triangles;
     }
   }
+  result.half_step[6] = std::uint8_t(2 * result.inner_edges);
+  for (std::size_t corner = std::size_t(3) * result.triangles; corner < result.vertex.size(); ++corner) {
+    result.vertex[corner] = result.vertex[corner % 3];
+    result.slot[corner] = result.slot[corner % 3];
+    result.half[corner] = result.half[corner % 3];
+  }
   return result;
 }
 
 }  // namespace
 
 CaseTable::CaseTable(Winding winding) {
-  for (int inside = 0; inside < 256; ++inside) cases_[inside] = make_case(inside, winding);
+  for (int inside = 0; inside < 256; ++inside) {
+    cases_[inside] = make_case(inside, winding);
+    counts_[inside] = cases_[inside].triangles | std::uint32_t(cases_[inside].inner_edges) << 16;
+  }
 }
 
 const CaseTable& case_table(CaseTable::Winding winding) {

@@ -5,19 +5,22 @@
 
 namespace isolux::mc {
 
-/// How many of a row's or cell's counters a case uses up; see CaseTable.
-struct CellCase {
+/// How many of a row's or cell's counters a case uses up, in bytes, as 40 kB of wider numbers would not stay in the
+/// nearest cache; see CaseTable.
+struct alignas(64) CellCase {
+  /// Vertex numbers run along the four rows of x edges and the two rows each of y and z edges: what is added to a row's
+  /// next number for each edge's vertex, and once the cell is done. By cube edge; four more are 0.
+  std::array<std::uint8_t, 16> offset{};
+  std::array<std::uint8_t, 16> step{};
+  std::array<std::uint8_t, 16> vertex{};  ///< cube edge of each triangle corner; beyond the last, the first triangle's
   std::uint8_t triangles = 0;
   std::uint8_t inner_edges = 0;
   std::array<std::int8_t, 3> owned{-1, -1, -1};  ///< a half-edge leaving the vertex on edge 0, 4, 8, or -1
-  /// Vertex numbers run along the four rows of x edges and the two rows each of y and z edges: what is added to a row's
-  /// next number for each edge's vertex, and once the cell is done. By cube edge.
-  std::array<std::uint32_t, 12> offset{};
-  std::array<std::uint32_t, 12> step{};
-  std::array<std::uint8_t, 6> segments{};  ///< on each face
-  std::array<std::uint8_t, 15> vertex{};   ///< cube edge of each triangle corner
-  std::array<std::uint8_t, 15> slot{};     ///< of each half-edge: the face it lies on, 6 for inside the cell
-  std::array<std::uint8_t, 15> half{};     ///< its number among the half-edges of that face or of the inside
+  std::array<std::uint8_t, 16> slot{};           ///< of each half-edge: the face it lies on, 6 for inside the cell
+  std::array<std::uint8_t, 16> half{};           ///< its number among the half-edges of that face or of the inside
+  /// As offset and step, for half-edges on the six faces and, seventh, inside; both faces across x are on one row.
+  std::array<std::uint8_t, 8> half_offset{};
+  std::array<std::uint8_t, 8> half_step{};
 };
 
 /// The 256 cases of marching cubes, made by rule so that any two neighbours fit: inside corners are kept apart on every
@@ -32,9 +35,12 @@ class CaseTable {
   };
   explicit CaseTable(Winding winding);
   [[nodiscard]] const CellCase& operator[](unsigned inside) const { return cases_[inside]; }
+  /// The triangles of a case, and 2^16 times its inner edges: both summed at once.
+  [[nodiscard]] std::uint32_t counts(unsigned inside) const { return counts_[inside]; }
 
  private:
   std::array<CellCase, 256> cases_;
+  std::array<std::uint32_t, 256> counts_{};
 };
 
 /// The table of each winding, made once.

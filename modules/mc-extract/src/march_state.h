@@ -5,6 +5,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <vector>
 
 #include "level_set.h"
 
@@ -34,9 +35,26 @@ struct Counts {
   std::uint32_t triangle = 0;
 };
 
+/// The mixed cells of a slab along its rows: what connecting them needs, so that bits are looked at once only.
+struct CellList {
+  struct Row {
+    int row;
+    std::uint32_t cells;
+  };
+  std::vector<Row> rows;            ///< those with a mixed cell
+  std::vector<std::uint8_t> cases;  ///< corners inside, of cell after cell; longer than needed
+
+  /// Where `count` cases may be written after `used` ones.
+  [[nodiscard]] std::uint8_t* room(std::size_t used, std::size_t count) {
+    if (cases.size() < used + count) cases.resize(2 * used + 16 * count);
+    return cases.data() + used;
+  }
+};
+
 /// One slab's part of the work: how many words of it hold anything, how many things, and their first numbers.
 struct Slab {
   std::uint32_t active_words = 0;
+  CellList cells;
   Counts total;
   Counts first;
 };

@@ -1,6 +1,6 @@
 #include <algorithm>
 #include <array>
-#include <bit>
+#include <cstddef>
 
 #include "wide_kernels.h"
 
@@ -17,125 +17,171 @@ namespace {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// Numbers of the vertices on a cell's twelve edges, three vectors of four.
-constexpr hn::CappedTag<std::uint32_t, 4> kFour;
+#if HWY_ARCH_X86 && HWY_TARGET <= HWY_AVX2  // wider targets have lower numbers
 
-/// sum[e] = a[e] + b[e] for the twelve edges: left to itself the compiler adds them one by one.
-HWY_INLINE void add_twelve(const std::uint32_t* a, const std::uint32_t* b, std::uint32_t* sum) {
-  for (std::size_t e = 0; e < 12; e += hn::Lanes(kFour))
-    hn::StoreU(hn::Add(hn::LoadU(kFour, a + e), hn::LoadU(kFour, b + e)), kFour, sum + e);
+constexpr hn::FixedTag<std::uint32_t, 8> kEight;
+using Eight = hn::Vec<decltype(kEight)>;
+
+HWY_INLINE Eight load(const std::uint32_t* from) { return hn::LoadU(kEight, from); }
+HWY_INLINE Eight load(const std::uint8_t* from) {
+  return hn::PromoteTo(kEight, hn::LoadU(hn::FixedTag<std::uint8_t, 8>(), from));
+}
+HWY_INLINE Eight add(Eight a, Eight b) { return hn::Add(a, b); }
+HWY_INLINE void store(Eight v, std::uint32_t* to) { hn::StoreU(v, kEight, to); }
+/// from[places]: places below 8.
+HWY_INLINE Eight pick(Eight from, Eight places) {
+  return hn::TableLookupLanes(from, hn::IndicesFromVec(kEight, places));
+}
+/// The same of sixteen numbers.
+HWY_INLINE Eight pick(Eight low, Eight high, Eight places) {
+  const Eight seven = hn::Set(kEight, 7);
+  const Eight place = hn::And(places, seven);
+  return hn::IfThenElse(hn::Gt(places, seven), pick(high, place), pick(low, place));
 }
 
-/// The numbers that run along a row of cells: the next vertex on each of the rows of grid edges around it, and the next
-/// mesh edge on each of its rows of faces and inside.
-struct RowCounters {
-  std::array<std::uint32_t, 12> vertex;  ///< for each cube edge the next one on its row
-  std::uint32_t face_x;
-  std::array<std::uint32_t, 2> face_y;
-  std::array<std::uint32_t, 2> face_z;
-  std::uint32_t inner;
-  std::uint32_t triangle;
+#else
 
+using Eight = std::array<std::uint32_t, 8>;
+
+template <class Number>
+HWY_INLINE Eight load(const Number* from) {
+  Eight v;
+  std::copy(from, from + 8, v.begin());
+  return v;
+}
+HWY_INLINE Eight add(const Eight& a, const Eight& b) {
+  Eight sum;
+  for (int i = 0; i < 8; ++i) sum[i] = a[i] + b[i];
+  return sum;
+}
+HWY_INLINE void store(const Eight& v, std::uint32_t* to) { std::copy(v.begin(), v.end(), to); }
+HWY_INLINE Eight pick(const Eight& from, const Eight& places) {
+  Eight picked;
+  for (int i = 0; i < 8; ++i) picked[i] = from[places[i]];
+  return picked;
+}
+HWY_INLINE Eight pick(const Eight& low, const Eight& high, const Eight& places) {
+  Eight picked;
+  for (int i = 0; i < 8; ++i) picked[i] = places[i] < 8 ? low[places[i]] : high[places[i] - 8];
+  return picked;
+}
+
+#endif
+
+/// The numbers that run along a row of cells: the next vertex on each of the rows of grid edges around it, and the next
+/// half-edge on each of its rows of faces and inside.
+class RowCounters {
+ public:
   HWY_INLINE RowCounters(const MarchState& march, int j, int k) {
     const Counts& lower = march.slabs[k].first;
     const Counts& upper = march.slabs[k + 1].first;
     const Counts* rows = march.slab_rows(k) + j;
     const Counts* upper_rows = march.slab_rows(k + 1) + j;
-    const std::uint32_t x[4] = {lower.vertex_x + rows[0].vertex_x, lower.vertex_x + rows[1].vertex_x,
-                                upper.vertex_x + upper_rows[0].vertex_x, upper.vertex_x + upper_rows[1].vertex_x};
     const std::uint32_t y[2] = {lower.vertex_y + rows[0].vertex_y, upper.vertex_y + upper_rows[0].vertex_y};
     const std::uint32_t z[2] = {lower.vertex_z + rows[0].vertex_z, lower.vertex_z + rows[1].vertex_z};
-    vertex = {x[0], x[1], x[2], x[3], y[0], y[0], y[1], y[1], z[0], z[0], z[1], z[1]};
-    face_x = lower.face_x + rows[0].face_x;
-    face_y = {lower.face_y + rows[0].face_y, lower.face_y + rows[1].face_y};
-    face_z = {lower.face_z + rows[0].face_z, upper.face_z + upper_rows[0].face_z};
-    inner = lower.inner + rows[0].inner;
-    triangle = lower.triangle + rows[0].triangle;
+    const std::array<std::uint32_t, 16> vertex = {lower.vertex_x + rows[0].vertex_x,
+                                                  lower.vertex_x + rows[1].vertex_x,
+                                                  upper.vertex_x + upper_rows[0].vertex_x,
+                                                  upper.vertex_x + upper_rows[1].vertex_x,
+                                                  y[0],
+                                                  y[0],
+                                                  y[1],
+                                                  y[1],
+                                                  z[0],
+                                                  z[0],
+                                                  z[1],
+                                                  z[1]};
+    low_ = load(vertex.data());
+    high_ = load(vertex.data() + 8);
+    const std::uint32_t face_x = 2 * (lower.face_x + rows[0].face_x);
+    const std::array<std::uint32_t, 8> half = {face_x,
+                                               face_x,
+                                               2 * (lower.face_y + rows[0].face_y),
+                                               2 * (lower.face_y + rows[1].face_y),
+                                               2 * (lower.face_z + rows[0].face_z),
+                                               2 * (upper.face_z + upper_rows[0].face_z),
+                                               2 * (lower.inner + rows[0].inner)};
+    half_ = load(half.data());
   }
 
-  /// Vertex numbers of the cell's twelve edges; those not crossed are meaningless.
-  HWY_INLINE void vertices(const CellCase& cell, std::uint32_t (&ids)[12]) const {
-    add_twelve(vertex.data(), cell.offset.data(), ids);
+  /// The vertices of the cell's sixteen triangle corners (see CellCase), and on to the next cell.
+  HWY_INLINE void pass_vertices(const CellCase& cell, std::uint32_t* corners) {
+    const Eight low = add(low_, load(cell.offset.data()));
+    const Eight high = add(high_, load(cell.offset.data() + 8));
+    store(pick(low, high, load(cell.vertex.data())), corners);
+    store(pick(low, high, load(cell.vertex.data() + 8)), corners + 8);
+    low_ = add(low_, load(cell.step.data()));
+    high_ = add(high_, load(cell.step.data() + 8));
   }
-  /// First half-edge of the cell's six faces and of its inside.
-  HWY_INLINE void half_edges(const CellCase& cell, std::uint32_t (&ids)[8]) const {
-    ids[0] = 2 * face_x;
-    ids[1] = 2 * (face_x + cell.segments[0]);
-    for (int r = 0; r < 2; ++r) {
-      ids[2 + r] = 2 * face_y[r];
-      ids[4 + r] = 2 * face_z[r];
-    }
-    ids[6] = 2 * inner;
-    ids[7] = 0;
+  /// The half-edges that leave these corners, and on to the next cell.
+  HWY_INLINE void pass_half_edges(const CellCase& cell, std::uint32_t* leaving) {
+    const Eight first = add(half_, load(cell.half_offset.data()));
+    for (int c = 0; c < 16; c += 8)
+      store(add(pick(first, load(cell.slot.data() + c)), load(cell.half.data() + c)), leaving + c);
+    half_ = add(half_, load(cell.half_step.data()));
   }
-  HWY_INLINE void pass_vertices(const CellCase& cell) {
-    add_twelve(vertex.data(), cell.step.data(), vertex.data());
-    triangle += cell.triangles;
-  }
-  HWY_INLINE void pass_half_edges(const CellCase& cell) {
-    face_x += cell.segments[0];
-    for (int r = 0; r < 2; ++r) {
-      face_y[r] += cell.segments[2 + r];
-      face_z[r] += cell.segments[4 + r];
-    }
-    inner += cell.inner_edges;
-  }
+
+ private:
+  Eight low_;   ///< for each of the cube's edges 0 to 7 the next vertex on its row
+  Eight high_;  ///< of its edges 8 to 11
+  Eight half_;  ///< the next half-edge on each face's row, and inside
 };
 
 /// Calls visit(cell case, counters) for every mixed cell of slab k; visit moves the counters on.
 template <class Visit>
-void for_each_cell(const MarchState& march, int k, const CaseTable& cases, const Visit& visit) {
-  if (k + 1 >= march.nz || march.slabs[k].total.triangle == 0) return;
-  const std::uint32_t* active = march.slab_active(k);
-  const std::uint32_t count = march.slabs[k].active_words;
-  for (std::uint32_t n = 0; n < count;) {
-    const int j = row_of(active[n]);
-    if (j + 1 >= march.ny) return;
-    RowCounters counters(march, j, k);
-    const std::uint32_t row_end = pack_word(j + 1, 0);
-    for (; n < count && active[n] < row_end; ++n) {
-      const int word = word_of(active[n]);
-      const WordBits bits(march, j, k, word);
-      for (std::uint64_t mixed = bits.mixed(march.cell_mask(word)); mixed != 0; mixed &= mixed - 1)
-        visit(cases[bits.corners(std::countr_zero(mixed))], counters);
-    }
+HWY_INLINE void for_each_cell(const MarchState& march, int k, const CaseTable& cases, const Visit& visit) {
+  const CellList& list = march.slabs[k].cells;
+  const std::uint8_t* inside = list.cases.data();
+  for (const CellList::Row& row : list.rows) {
+    RowCounters counters(march, row.row, k);
+    for (const std::uint8_t* end = inside + row.cells; inside < end; ++inside) visit(cases[*inside], counters);
   }
 }
 
 void make_triangles_wide(const MarchState& march, int k, const CaseTable& cases, Triangle* triangles) {
+  const Slab& slab = march.slabs[k];
+  if (slab.total.triangle == 0) return;
+  constexpr int kCorners = 16;
+  std::uint32_t* out = (triangles + slab.first.triangle)->data();
+  // All corners of a case are written, the next cell's over those it does not have. Where the last ones would reach
+  // beyond the slab, which another thread may have written, they go by here.
+  std::uint32_t* const end = out + std::size_t(3) * slab.total.triangle;
   for_each_cell(march, k, cases, [&](const CellCase& cell, RowCounters& counters) HWY_ATTR {
-    std::uint32_t vertices[12];
-    counters.vertices(cell, vertices);
-    Triangle* out = triangles + counters.triangle;
-    for (unsigned t = 0; t < cell.triangles; ++t)
-      out[t] = {vertices[cell.vertex[3 * t]], vertices[cell.vertex[3 * t + 1]], vertices[cell.vertex[3 * t + 2]]};
-    counters.pass_vertices(cell);
+    const std::size_t count = std::size_t(3) * cell.triangles;
+    if (end - out >= kCorners) {
+      counters.pass_vertices(cell, out);
+    } else {
+      std::uint32_t corners[kCorners];
+      counters.pass_vertices(cell, corners);
+      std::copy(corners, corners + count, out);
+    }
+    out += count;
   });
 }
 
+HWY_INLINE void write_triangle(const std::uint32_t* vertex, const std::uint32_t* leaving, std::uint32_t face,
+                               HalfEdgeRecord* half_edges) {
+  const auto v = [&](int i) { return std::int32_t(vertex[i]); };
+  const auto h = [&](int i) { return std::int32_t(leaving[i]); };
+  const auto f = std::int32_t(face);
+  half_edges[leaving[0]] = {.face = f, .to_vertex = v(1), .next = h(1), .previous = h(2)};
+  half_edges[leaving[1]] = {.face = f, .to_vertex = v(2), .next = h(2), .previous = h(0)};
+  half_edges[leaving[2]] = {.face = f, .to_vertex = v(0), .next = h(0), .previous = h(1)};
+}
+
 void make_half_edges_wide(const MarchState& march, int k, const CaseTable& cases, const HalfEdgeArrays& out) {
+  std::uint32_t face = march.slabs[k].first.triangle;
   for_each_cell(march, k, cases, [&](const CellCase& cell, RowCounters& counters) HWY_ATTR {
-    std::uint32_t vertices[12];
-    std::uint32_t first_halves[8];
-    counters.vertices(cell, vertices);
-    counters.half_edges(cell, first_halves);
-    const auto vertex = [&](unsigned corner) HWY_ATTR { return std::int32_t(vertices[cell.vertex[corner]]); };
-    const auto half = [&](unsigned corner)
-                          HWY_ATTR { return std::int32_t(first_halves[cell.slot[corner]] + cell.half[corner]); };
-    for (unsigned t = 0; t < cell.triangles; ++t) {
-      const unsigned c = 3 * t;
-      const std::int32_t v[3] = {vertex(c), vertex(c + 1), vertex(c + 2)};
-      const std::int32_t h[3] = {half(c), half(c + 1), half(c + 2)};
-      const std::int32_t face = std::int32_t(counters.triangle + t);
-      out.half_edges[h[0]] = {.face = face, .to_vertex = v[1], .next = h[1], .previous = h[2]};
-      out.half_edges[h[1]] = {.face = face, .to_vertex = v[2], .next = h[2], .previous = h[0]};
-      out.half_edges[h[2]] = {.face = face, .to_vertex = v[0], .next = h[0], .previous = h[1]};
-      out.face_half_edge[face] = h[0];
+    std::uint32_t vertex[16];
+    std::uint32_t leaving[16];
+    counters.pass_vertices(cell, vertex);
+    counters.pass_half_edges(cell, leaving);
+    for (unsigned t = 0; t < cell.triangles; ++t, ++face) {
+      write_triangle(vertex + 3 * t, leaving + 3 * t, face, out.half_edges);
+      out.face_half_edge[face] = std::int32_t(leaving[3 * t]);
     }
-    for (int axis = 0; axis < 3; ++axis)
-      if (cell.owned[axis] >= 0) out.vertex_half_edge[vertices[4 * axis]] = half(unsigned(cell.owned[axis]));
-    counters.pass_vertices(cell);
-    counters.pass_half_edges(cell);
+    for (const std::int8_t corner : cell.owned)
+      if (corner >= 0) out.vertex_half_edge[vertex[corner]] = std::int32_t(leaving[corner]);
   });
 }
 

@@ -115,28 +115,36 @@ std::uint32_t segments(std::uint64_t a, std::uint64_t b, std::uint64_t c, std::u
   return ones(some) + ones(alternating);
 }
 
-/// Adds what the grid points of one word own.
+/// Adds what the grid points of one word own, but for what its cells hold.
 template <Connectivity kConnectivity>
-void count_word(const MarchState& march, int j, int k, int word, const WordBits& bits, const CaseTable& cases,
-                Counts& counts) {
+void count_word(const MarchState& march, int j, int k, int word, const WordBits& bits, Counts& counts) {
   const auto& [a, b, c, d] = bits.here;
   const std::uint64_t cells = march.cell_mask(word);
-  const bool below_last_row = j + 1 < march.ny;
-  const bool below_last_plane = k + 1 < march.nz;
   counts.vertex_x += ones((a ^ bits.next[0]) & cells);
   counts.vertex_y += ones(a ^ b);
   counts.vertex_z += ones(a ^ c);
   if constexpr (kConnectivity == Connectivity::kHalfEdges) {
+    const bool below_last_row = j + 1 < march.ny;
+    const bool below_last_plane = k + 1 < march.nz;
     if (below_last_row && below_last_plane) counts.face_x += segments(a, b, c, d, ~std::uint64_t(0));
     if (below_last_plane) counts.face_y += segments(a, bits.next[0], c, bits.next[2], cells);
     if (below_last_row) counts.face_z += segments(a, bits.next[0], b, bits.next[1], cells);
   }
-  if (!below_last_row || !below_last_plane) return;
-  for (std::uint64_t mixed = bits.mixed(cells); mixed != 0; mixed &= mixed - 1) {
-    const CellCase& cell = cases[bits.corners(std::countr_zero(mixed))];
-    counts.triangle += cell.triangles;
-    if constexpr (kConnectivity == Connectivity::kHalfEdges) counts.inner += cell.inner_edges;
+}
+
+/// Lists the mixed cells of one word and adds what they hold.
+std::uint32_t list_cells(const WordBits& bits, std::uint64_t mixed, const CaseTable& cases, std::uint8_t* list,
+                         Counts& counts) {
+  const std::uint32_t count = ones(mixed);
+  std::uint32_t held = 0;
+  for (std::uint32_t n = 0; n < count; ++n, mixed &= mixed - 1) {
+    const unsigned inside = bits.corners(std::countr_zero(mixed));
+    list[n] = std::uint8_t(inside);
+    held += cases.counts(inside);
   }
+  counts.triangle += held & 0xffff;
+  counts.inner += held >> 16;
+  return count;
 }
 
 template <Connectivity kConnectivity>
@@ -145,17 +153,26 @@ void count_slab_wide(MarchState& march, int k, const std::uint32_t* candidates, 
   Counts counts;
   std::uint32_t* active = march.slab_active(k);
   Counts* rows = march.slab_rows(k);
+  CellList& list = march.slabs[k].cells;
+  list.rows.clear();
   std::uint32_t found = 0;
+  std::uint32_t cells = 0;
   int last_row = -1;
   const auto visit = [&](int j, int word) HWY_ATTR {
     const WordBits bits(march, j, k, word);
     const auto& [a, b, c, d] = bits.here;
-    const std::uint64_t differing = ((a | b | c | d) & ~(a & b & c & d)) | bits.mixed(march.cell_mask(word));
+    const std::uint64_t mixed = bits.mixed(march.cell_mask(word));
+    const std::uint64_t differing = ((a | b | c | d) & ~(a & b & c & d)) | mixed;
     if (differing == 0) return;
     if (j != last_row) rows[j] = counts;
     last_row = j;
     active[found++] = pack_word(j, word);
-    count_word<kConnectivity>(march, j, k, word, bits, cases, counts);
+    count_word<kConnectivity>(march, j, k, word, bits, counts);
+    if (mixed == 0 || j + 1 >= march.ny || k + 1 >= march.nz) return;
+    if (list.rows.empty() || list.rows.back().row != j) list.rows.push_back({.row = j, .cells = 0});
+    const std::uint32_t count = list_cells(bits, mixed, cases, list.room(cells, 64), counts);
+    list.rows.back().cells += count;
+    cells += count;
   };
   if (candidates != nullptr) {
     for (std::size_t n = 0; n < candidate_count; ++n) visit(row_of(candidates[n]), word_of(candidates[n]));
