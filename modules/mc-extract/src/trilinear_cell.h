@@ -16,6 +16,9 @@ class TrilinearCell {
   [[nodiscard]] double value(const Vec3& p) const;
   [[nodiscard]] Vec3 gradient(const Vec3& p) const;
 
+  /// Where the gradient is zero, inside the cell or not: saddles all.
+  [[nodiscard]] std::array<std::optional<Vec3>, 2> critical_points() const;
+
   /// Bit f: whether the inside corners of the ambiguous face f are connected on it, which is where the bilinear saddle
   /// is inside (asymptotic decider, Nielson & Hamann 1991). The two products are the same numbers from both cells.
   [[nodiscard]] int joined_faces() const;
@@ -42,7 +45,6 @@ class TrilinearCell {
 
  private:
   [[nodiscard]] int climb(Vec3 p, double sign) const;
-  [[nodiscard]] std::array<std::optional<Vec3>, 2> critical_points() const;
   [[nodiscard]] std::optional<Tunnel> tunnel_at(const Vec3& saddle) const;
 
   std::array<double, 8> corners_;
