@@ -35,6 +35,10 @@ struct EdgeBatch {
   float* positions;
   float* normals;
 
+  EdgeBatch(float* first_position, float* first_normal) : positions(first_position), normals(first_normal) {}
+
+  [[nodiscard]] bool full() const { return count >= kCapacity; }
+
   /// `ahead` is where the word lies in the highest plane that its edges' gradients read: what other edges have not yet
   /// brought near. Asked for here it is there when the batch is computed.
   void add(std::uint64_t crossed, int j, int word, const float* ahead) {
@@ -47,6 +51,75 @@ struct EdgeBatch {
   }
 };
 
+/// The values that the vertices of some edges along kAxis are made from, copied one edge after the other: four that lie
+/// side by side cost one load, where a gather takes some five operations a value (Zen 3). Beyond the box the last value
+/// serves again.
+template <int kAxis>
+class EdgeValues {
+ public:
+  static constexpr int kCapacity = 64;
+  template <int kValues>
+  using Values = std::array<float, std::size_t(kValues) * kCapacity>;
+
+  Values<4> low;                                  ///< from one before the edge's lower end along x
+  Values<kAxis == 0 ? 0 : 4> high;                ///< and its upper end
+  Values<kAxis == 0 ? 0 : 1> before, beyond;      ///< one step further along the edge's own axis
+  Values<kAxis == 0 ? 2 : 1> low_down, low_up;    ///< a step along y for edges along x and z, along z for others
+  Values<kAxis == 0 ? 2 : 1> high_down, high_up;  ///< from the upper end; for edges along x a step along z
+
+  HWY_INLINE void copy(const MarchState& march, int k, const std::uint32_t* edges, int count) {
+    const std::size_t row = std::size_t(march.nx);
+    const std::size_t plane = row * std::size_t(march.ny);
+    const float* first = march.row_values(0, k);
+    // Of edges inside the box all neighbours are there: unsigned, a coordinate of 0 is too large as well.
+    const auto inner_x = std::uint32_t(std::max(0, march.nx - 3));
+    const auto inner_y = k > 0 && k + 2 < march.nz ? std::uint32_t(std::max(0, march.ny - 3)) : 0U;
+    for (int e = 0; e < count; ++e) {
+      const std::uint32_t i = edges[e] & 0xffff;
+      const std::uint32_t j = edges[e] >> 16;
+      if (i - 1 < inner_x && j - 1 < inner_y) [[likely]]
+        copy_edge(e, first + j * row + i, kAxis == 1 ? row : plane, kAxis == 1 ? plane : row);
+      else
+        copy_border_edge(march, int(i), int(j), k, e);
+    }
+  }
+
+ private:
+  /// `along` is the step on the edge's own axis, or along z for an edge along x, and `across` the step on the third.
+  HWY_INLINE void copy_edge(int e, const float* at, std::size_t along, std::size_t across) {
+    std::memcpy(&low[4 * e], at - 1, 4 * sizeof(float));
+    if constexpr (kAxis == 0) {
+      std::memcpy(&low_down[2 * e], at - across, 2 * sizeof(float));
+      std::memcpy(&low_up[2 * e], at + across, 2 * sizeof(float));
+      std::memcpy(&high_down[2 * e], at - along, 2 * sizeof(float));
+      std::memcpy(&high_up[2 * e], at + along, 2 * sizeof(float));
+    } else {
+      low_down[e] = *(at - across);
+      low_up[e] = at[across];
+      before[e] = *(at - along);
+      at += along;
+      std::memcpy(&high[4 * e], at - 1, 4 * sizeof(float));
+      high_down[e] = *(at - across);
+      high_up[e] = at[across];
+      beyond[e] = at[along];
+    }
+  }
+  HWY_NOINLINE void copy_border_edge(const MarchState& march, int i, int j, int k, int e) {
+    constexpr int kNear = 4;  // one before the lower end to two beyond it
+    float box[kNear][kNear][kNear];
+    for (int z = 0; z < kNear; ++z) {
+      for (int y = 0; y < kNear; ++y) {
+        const float* row =
+            march.row_values(std::clamp(j + y - 1, 0, march.ny - 1), std::clamp(k + z - 1, 0, march.nz - 1));
+        for (int x = 0; x < kNear; ++x) box[z][y][x] = row[std::clamp(i + x - 1, 0, march.nx - 1)];
+      }
+    }
+    constexpr std::size_t kRow = kNear;
+    constexpr std::size_t kPlane = std::size_t(kNear) * kNear;
+    copy_edge(e, &box[1][1][1], kAxis == 1 ? kRow : kPlane, kAxis == 1 ? kPlane : kRow);
+  }
+};
+
 struct V3 {
   F x, y, z;
 };
@@ -56,30 +129,31 @@ struct Ends {
   F low, high;
 };
 
-HWY_INLINE F gather(const float* base, I offsets) { return hn::GatherIndex(kF, base, offsets); }
-HWY_INLINE I choose(hn::Mask<Ints> mask, I yes, I no) { return hn::IfThenElse(mask, yes, no); }
-
 /// The edges of one slab along kAxis, a vector at a time.
 template <int kAxis>
 class VertexMaker {
  public:
-  VertexMaker(const MarchState& march, int k, const VertexFrame& frame)
-      : march_(march), frame_(frame), k_(k), base_(march.row_values(0, k)), steps_{1, march.nx, march.nx * march.ny} {}
+  VertexMaker(const MarchState& march, int k, const VertexFrame& frame) : march_(march), frame_(frame), k_(k) {}
 
-  void flush(EdgeBatch& batch) const {
+  void flush(EdgeBatch& batch) {
     const int lanes = int(hn::Lanes(kF));
-    // Lanes beyond the last edge compute the first grid point's edge, which is there to read.
-    std::memset(batch.edges.data() + batch.count, 0, HWY_MAX_BYTES);
-    for (int e = 0; e < batch.count; e += lanes) {
-      V3 position;
-      V3 normal;
-      compute(hn::LoadU(kI, reinterpret_cast<const std::int32_t*>(batch.edges.data()) + e), position, normal);
-      const int count = std::min(lanes, batch.count - e);
-      store(position, batch.positions + 3 * e, count);
-      store(normal, batch.normals + 3 * e, count);
+    constexpr int kStep = EdgeValues<kAxis>::kCapacity;
+    for (int first = 0; first < batch.count; first += kStep) {
+      const std::uint32_t* edges = batch.edges.data() + first;
+      const int end = std::min(kStep, batch.count - first);
+      values_.copy(march_, k_, edges, end);
+      // Lanes beyond the last edge compute what is never stored.
+      for (int e = 0; e < end; e += lanes) {
+        V3 position;
+        V3 normal;
+        compute(edges, e, position, normal);
+        const int count = std::min(lanes, end - e);
+        store(position, batch.positions, count);
+        store(normal, batch.normals, count);
+        batch.positions += 3 * count;
+        batch.normals += 3 * count;
+      }
     }
-    batch.positions += 3 * batch.count;
-    batch.normals += 3 * batch.count;
     batch.count = 0;
   }
 
@@ -94,13 +168,35 @@ class VertexMaker {
     }
   }
 
-  HWY_INLINE void compute(I edges, V3& position, V3& normal) const {
+  HWY_INLINE void compute(const std::uint32_t* batch, int e, V3& position, V3& normal) const {
+    const I edges = hn::LoadU(kI, reinterpret_cast<const std::int32_t*>(batch) + e);
     const I i = hn::And(edges, hn::Set(kI, 0xffff));
     const I j = hn::ShiftRight<16>(edges);
-    const I low = hn::Add(hn::Mul(j, hn::Set(kI, march_.nx)), i);
-    const I high = hn::Add(low, hn::Set(kI, steps_[kAxis]));
-    const F a = gather(base_, low);
-    const F b = gather(base_, high);
+    const I k = hn::Set(kI, k_);
+    F a;
+    F b;
+    F before;
+    F after;
+    Ends x;
+    Ends y;
+    Ends z;
+    hn::LoadInterleaved4(kF, &values_.low[4 * e], before, a, b, after);
+    if constexpr (kAxis == 0) {
+      x = along(i, march_.nx, before, a, b, after);
+      y = across(j, march_.ny, pair(&values_.low_down[2 * e]), pair(&values_.low_up[2 * e]));
+      z = across(k, march_.nz, pair(&values_.high_down[2 * e]), pair(&values_.high_up[2 * e]));
+    } else {
+      Ends down{before, before};
+      Ends up{b, b};
+      hn::LoadInterleaved4(kF, &values_.high[4 * e], down.high, b, up.high, after);
+      x = across(i, march_.nx, down, up);
+      const Ends down_across{hn::LoadU(kF, &values_.low_down[e]), hn::LoadU(kF, &values_.high_down[e])};
+      const Ends up_across{hn::LoadU(kF, &values_.low_up[e]), hn::LoadU(kF, &values_.high_up[e])};
+      before = hn::LoadU(kF, &values_.before[e]);
+      after = hn::LoadU(kF, &values_.beyond[e]);
+      y = kAxis == 1 ? along(j, march_.ny, before, a, b, after) : across(j, march_.ny, down_across, up_across);
+      z = kAxis == 2 ? along(k, march_.nz, before, a, b, after) : across(k, march_.nz, down_across, up_across);
+    }
     const F isovalue = hn::Set(kF, march_.isovalue);
     const F margin = hn::Set(kF, frame_.margin);
     const F end = hn::Set(kF, 1.0f - frame_.margin);
@@ -109,11 +205,14 @@ class VertexMaker {
     t = hn::IfThenElse(hn::Gt(t, margin), t, margin);
     t = hn::IfThenElse(hn::Lt(t, end), t, end);
     position = world(i, j, t);
-    const Ends x = difference<0>(i, march_.nx, low, high, a, b);
-    const Ends y = difference<1>(j, march_.ny, low, high, a, b);
-    const Ends z = difference<2>(hn::Set(kI, k_), march_.nz, low, high, a, b);
     const auto mix = [&](const Ends& g) HWY_ATTR { return hn::Add(g.low, hn::Mul(t, hn::Sub(g.high, g.low))); };
     normal = outwards({mix(x), mix(y), mix(z)}, a, b);
+  }
+
+  HWY_INLINE static Ends pair(const float* values) {
+    Ends ends;
+    hn::LoadInterleaved2(kF, values, ends.low, ends.high);
+    return ends;
   }
 
   HWY_INLINE V3 world(I i, I j, F t) const {
@@ -135,28 +234,21 @@ class VertexMaker {
                    hn::Mul(hn::Set(kF, m[2][w]), v.z));
   }
 
-  /// The field's central differences along kAlong at both ends, one-sided on the box's faces. `place` is the lower
-  /// end's coordinate on that axis.
-  template <int kAlong>
-  HWY_INLINE Ends difference(I place, int size, I low, I high, F a, F b) const {
-    const I step = hn::Set(kI, steps_[kAlong]);
+  /// The field's central differences at both ends of the edge, one-sided on the box's faces: along it, from the values
+  /// before it, at its ends a and b, and after it. `place` is the lower end's coordinate on that axis.
+  HWY_INLINE static Ends along(I place, int size, F before, F a, F b, F after) {
     const F half = hn::Set(kF, 0.5f);
     const F one = hn::Set(kF, 1.0f);
-    const auto has_lower = hn::Gt(place, hn::Zero(kI));
-    if constexpr (kAlong == kAxis) {
-      const auto has_upper = hn::Lt(place, hn::Set(kI, size - 2));
-      const F below = gather(base_, choose(has_lower, hn::Sub(low, step), low));
-      const F above = gather(base_, choose(has_upper, hn::Add(high, step), high));
-      return {hn::Mul(hn::Sub(b, below), hn::IfThenElse(hn::RebindMask(kF, has_lower), half, one)),
-              hn::Mul(hn::Sub(above, a), hn::IfThenElse(hn::RebindMask(kF, has_upper), half, one))};
-    } else {
-      const auto has_upper = hn::Lt(place, hn::Set(kI, size - 1));
-      const I down = hn::IfThenElseZero(has_lower, step);
-      const I up = hn::IfThenElseZero(has_upper, step);
-      const F scale = hn::IfThenElse(hn::RebindMask(kF, hn::And(has_lower, has_upper)), half, one);
-      return {hn::Mul(hn::Sub(gather(base_, hn::Add(low, up)), gather(base_, hn::Sub(low, down))), scale),
-              hn::Mul(hn::Sub(gather(base_, hn::Add(high, up)), gather(base_, hn::Sub(high, down))), scale)};
-    }
+    const auto has_lower = hn::RebindMask(kF, hn::Gt(place, hn::Zero(kI)));
+    const auto has_upper = hn::RebindMask(kF, hn::Lt(place, hn::Set(kI, size - 2)));
+    return {hn::Mul(hn::Sub(b, before), hn::IfThenElse(has_lower, half, one)),
+            hn::Mul(hn::Sub(after, a), hn::IfThenElse(has_upper, half, one))};
+  }
+  /// The same along another axis, from the values one step down and up from each end.
+  HWY_INLINE static Ends across(I place, int size, const Ends& down, const Ends& up) {
+    const auto inner = hn::And(hn::Gt(place, hn::Zero(kI)), hn::Lt(place, hn::Set(kI, size - 1)));
+    const F scale = hn::IfThenElse(hn::RebindMask(kF, inner), hn::Set(kF, 0.5f), hn::Set(kF, 1.0f));
+    return {hn::Mul(hn::Sub(up.low, down.low), scale), hn::Mul(hn::Sub(up.high, down.high), scale)};
   }
 
   /// The unit vector outwards for the gradient g, or along the edge where g is rounding noise, zero or not finite: the
@@ -185,24 +277,18 @@ class VertexMaker {
   const MarchState& march_;
   const VertexFrame& frame_;
   int k_;
-  const float* base_;
-  std::array<int, 3> steps_;
+  EdgeValues<kAxis> values_;
 };
 
 void make_vertices_wide(const MarchState& march, int k, const VertexFrame& frame, float* positions, float* normals) {
   const Slab& slab = march.slabs[k];
-  const auto batch_from = [&](std::uint32_t first) HWY_ATTR {
-    EdgeBatch batch;
-    batch.positions = positions + 3 * std::size_t(first);
-    batch.normals = normals + 3 * std::size_t(first);
-    return batch;
-  };
-  EdgeBatch along_x = batch_from(slab.first.vertex_x);
-  EdgeBatch along_y = batch_from(slab.first.vertex_y);
-  EdgeBatch along_z = batch_from(slab.first.vertex_z);
-  const VertexMaker<0> make_x(march, k, frame);
-  const VertexMaker<1> make_y(march, k, frame);
-  const VertexMaker<2> make_z(march, k, frame);
+  const auto at = [](float* first, std::uint32_t vertex) { return first + 3 * std::size_t(vertex); };
+  EdgeBatch along_x(at(positions, slab.first.vertex_x), at(normals, slab.first.vertex_x));
+  EdgeBatch along_y(at(positions, slab.first.vertex_y), at(normals, slab.first.vertex_y));
+  EdgeBatch along_z(at(positions, slab.first.vertex_z), at(normals, slab.first.vertex_z));
+  VertexMaker<0> make_x(march, k, frame);
+  VertexMaker<1> make_y(march, k, frame);
+  VertexMaker<2> make_z(march, k, frame);
   const std::uint32_t* active = march.slab_active(k);
   for (std::uint32_t n = 0; n < slab.active_words; ++n) {
     const int j = row_of(active[n]);
@@ -213,9 +299,9 @@ void make_vertices_wide(const MarchState& march, int k, const VertexFrame& frame
     along_x.add((bits.here[0] ^ bits.next[0]) & march.cell_mask(word), j, word, above);
     along_y.add(bits.here[0] ^ bits.here[1], j, word, above);
     along_z.add(bits.here[0] ^ bits.here[2], j, word, two_above);
-    if (along_x.count >= EdgeBatch::kCapacity) make_x.flush(along_x);
-    if (along_y.count >= EdgeBatch::kCapacity) make_y.flush(along_y);
-    if (along_z.count >= EdgeBatch::kCapacity) make_z.flush(along_z);
+    if (along_x.full()) make_x.flush(along_x);
+    if (along_y.full()) make_y.flush(along_y);
+    if (along_z.full()) make_z.flush(along_z);
   }
   make_x.flush(along_x);
   make_y.flush(along_y);
