@@ -78,7 +78,8 @@ RowMarch::RowMarch(const Volume& volume, double dense)
   march_.nz = size.z;
   march_.words = (size.x + 63) / 64;
   const std::size_t rows = std::size_t(size.y) * std::size_t(size.z);
-  bits_.resize(rows * std::size_t(march_.words));
+  bits_.resize(rows * std::size_t(march_.words) + 1);
+  bits_.back() = 0;
   active_.resize(rows * std::size_t(march_.words));
   rows_.resize(rows);
   march_.bits = bits_.data();

@@ -147,6 +147,38 @@ std::uint32_t list_cells(const WordBits& bits, std::uint64_t mixed, const CaseTa
   return count;
 }
 
+/// Visits the words of a row that may hold anything: nearly all hold nothing, and vectors tell that of several at once.
+template <class Visit>
+void visit_row(const MarchState& march, int j, int k, const Visit& visit) {
+  const hn::ScalableTag<std::uint64_t> d;
+  const int lanes = int(hn::Lanes(d));
+  const int upper_row = std::min(j + 1, march.ny - 1);
+  const int upper_plane = std::min(k + 1, march.nz - 1);
+  const std::uint64_t* rows[4] = {march.row_bits(j, k), march.row_bits(upper_row, k), march.row_bits(j, upper_plane),
+                                  march.row_bits(upper_row, upper_plane)};
+  int word = 0;
+  for (; word + lanes <= march.words; word += lanes) {
+    const auto load = [&](int row, int offset) HWY_ATTR { return hn::LoadU(d, rows[row] + word + offset); };
+    const auto any = [&](int offset) HWY_ATTR {
+      return hn::Or(hn::Or(load(0, offset), load(1, offset)), hn::Or(load(2, offset), load(3, offset)));
+    };
+    const auto all = [&](int offset) HWY_ATTR {
+      return hn::And(hn::And(load(0, offset), load(1, offset)), hn::And(load(2, offset), load(3, offset)));
+    };
+    // After a row's last word comes the next row's: it says too much at most of a grid point that has no cell.
+    const auto next = [&](auto here, auto after)
+                          HWY_ATTR { return hn::Or(hn::ShiftRight<1>(here), hn::ShiftLeft<63>(after)); };
+    const auto any_here = any(0);
+    const auto all_here = all(0);
+    const auto differing =
+        hn::AndNot(hn::And(all_here, next(all_here, all(1))), hn::Or(any_here, next(any_here, any(1))));
+    const auto uniform = hn::Eq(differing, hn::Zero(d));
+    if (hn::AllTrue(d, uniform)) continue;
+    for (int n = 0; n < lanes; ++n) visit(j, word + n);
+  }
+  for (; word < march.words; ++word) visit(j, word);
+}
+
 template <Connectivity kConnectivity>
 void count_slab_wide(MarchState& march, int k, const std::uint32_t* candidates, std::size_t candidate_count) {
   const CaseTable& cases = case_table(CaseTable::Winding::kOutwards);  // counts are the same for both
@@ -177,8 +209,7 @@ void count_slab_wide(MarchState& march, int k, const std::uint32_t* candidates, 
   if (candidates != nullptr) {
     for (std::size_t n = 0; n < candidate_count; ++n) visit(row_of(candidates[n]), word_of(candidates[n]));
   } else {
-    for (int j = 0; j < march.ny; ++j)
-      for (int word = 0; word < march.words; ++word) visit(j, word);
+    for (int j = 0; j < march.ny; ++j) visit_row(march, j, k, visit);
   }
   march.slabs[k].active_words = found;
   march.slabs[k].total = counts;
