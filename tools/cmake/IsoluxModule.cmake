@@ -19,7 +19,9 @@ set(ISOLUX_VERSION 0.1.0)
 option(ISOLUX_TESTS "Build the tests" ON)
 option(ISOLUX_BENCHES "Build the kernel benchmarks" OFF)
 option(ISOLUX_EXAMPLES "Build the examples of the modules' READMEs" ON)
+option(ISOLUX_UNITY "Compile several sources of a module as one: quicker, where headers cost more than code" OFF)
 option(ISOLUX_WERROR "Treat warnings as errors" OFF)
+set(ISOLUX_TEST_FLAGS "" CACHE STRING "Compiler flags of test programs alone, such as -O1: their own code takes longer to compile than to run")
 set(ISOLUX_SANITIZE "" CACHE STRING "Sanitizers, such as address,undefined or thread")
 set(ISOLUX_WITHOUT "" CACHE STRING "Packages to do without even where they are installed, such as CGAL;ITK")
 
@@ -49,6 +51,9 @@ function(isolux_flags target)
     $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict>  # GCC 12: false positive on "x" + std::string
     -ffp-contract=off                        # the same bits with and without FMA instructions
     $<$<BOOL:${ISOLUX_WERROR}>:-Werror>)
+  if(target MATCHES "_tests$")
+    target_compile_options(${target} PRIVATE ${ISOLUX_TEST_FLAGS})
+  endif()
   if(ISOLUX_SANITIZE)
     target_compile_options(${target} PRIVATE -fsanitize=${ISOLUX_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer
       $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized>)  # GCC 12: false positives in the standard library's own headers
@@ -132,6 +137,18 @@ Registry<@stage@> @catalogue@() {
   set(${out_packages} ${packages} PARENT_SCOPE)
 endfunction()
 
+# Highway compiles a file once for each instruction set by including it again, and clang 14 refuses to parse ITK 5.2: such files stay
+# translation units of their own.
+macro(_isolux_keep_wide_sources_alone)
+  file(GLOB_RECURSE all_sources CONFIGURE_DEPENDS src/*.cpp)
+  foreach(source IN LISTS all_sources)
+    file(STRINGS ${source} is_wide REGEX "hwy/foreach_target|include <itk" LIMIT_COUNT 1)
+    if(is_wide)
+      set_source_files_properties(${source} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
+    endif()
+  endforeach()
+endmacro()
+
 function(isolux_module name)
   cmake_parse_arguments(M "" "STAGE;CATALOGUE;DEFAULT"
     "DEPENDS;PUBLIC_PACKAGES;PACKAGES;BACKEND_PACKAGES;TEST_PACKAGES;BENCH_PACKAGES" ${ARGN})
@@ -142,8 +159,11 @@ function(isolux_module name)
   foreach(module IN LISTS M_DEPENDS)
     isolux_need_module(${module})
   endforeach()
+  set(CMAKE_UNITY_BUILD ${ISOLUX_UNITY})
+  set(CMAKE_UNITY_BUILD_BATCH_SIZE 6)
 
   file(GLOB sources CONFIGURE_DEPENDS src/*.cpp)
+  _isolux_keep_wide_sources_alone()
   set(backend_packages "")
   if(M_STAGE)
     _isolux_catalogue(${name} ${id} ${M_STAGE} ${M_CATALOGUE} "${M_DEFAULT}" "${M_BACKEND_PACKAGES}"

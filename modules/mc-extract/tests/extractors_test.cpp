@@ -3,17 +3,18 @@
 #include <isolux/core/error.h>
 #include <isolux/mc_extract.h>
 
-#include <cstdlib>
 #include <glm/gtc/matrix_transform.hpp>
 #include <limits>
 
 #include "fields.h"
 #include "mesh_laws.h"
+#include "stress.h"
 
 namespace isolux {
 namespace {
 
 using namespace isolux::testing;
+using test::stress;
 
 std::vector<std::string> backend_names() {
   std::vector<std::string> names;
@@ -21,11 +22,6 @@ std::vector<std::string> backend_names() {
   for (const BackendInfo& info : registry.backends())
     if (info.unavailable.empty()) names.push_back(info.name);
   return names;
-}
-
-int stress() {
-  const char* factor = std::getenv("ISOLUX_STRESS");
-  return factor != nullptr ? std::max(1, std::atoi(factor)) : 1;
 }
 
 class EveryExtractor : public ::testing::TestWithParam<std::string> {

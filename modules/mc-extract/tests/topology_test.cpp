@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 #include <isolux/mc_extract.h>
 
-#include <cstdlib>
 #include <glm/common.hpp>
 #include <glm/vector_relational.hpp>
 #include <iostream>
@@ -12,12 +11,14 @@
 #include "cube.h"
 #include "fields.h"
 #include "mesh_laws.h"
+#include "stress.h"
 #include "trilinear_cell.h"
 
 namespace isolux {
 namespace {
 
 using namespace isolux::testing;
+using test::stress;
 
 struct Topology {
   std::size_t components;
@@ -35,11 +36,6 @@ Volume refined(const Volume& volume, int factor) {
   const TrilinearField field(volume);
   return sampled((volume.lattice().size - 1) * factor + 1, {.origin = Vec3(0.0), .axes = Mat3(1.0 / factor)},
                  [&](const Vec3& p) { return field.value(p); });
-}
-
-int stress() {
-  const char* factor = std::getenv("ISOLUX_STRESS");
-  return factor != nullptr ? std::max(1, std::atoi(factor)) : 1;
 }
 
 /// Every other volume alternates in sign as a chessboard does, more or less:

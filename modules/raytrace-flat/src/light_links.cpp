@@ -20,7 +20,6 @@ namespace isolux {
 namespace {
 
 constexpr std::size_t kSitesABlock = 8192;
-constexpr std::size_t kBlocksATask = 4;
 
 }  // namespace
 

@@ -9,8 +9,6 @@
 namespace isolux {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
-
 // Below this solid angle the directions to a rectangle are so alike that drawing by area is as good, and the angles of
 // the spherical triangles begin to drown in rounding.
 constexpr double kSmallSolidAngle = 1e-3;
@@ -54,7 +52,7 @@ struct SphericalTriangle {
 
 PreparedLight::PreparedLight(const Light& light) : shape_(Cone{}) {
   if (const auto* sun = std::get_if<SunLight>(&light)) {
-    const double radius = double(sun->angular_diameter_deg) * kPi / 360.0;
+    const double radius = double(sun->angular_diameter_deg) * std::numbers::pi / 360.0;
     const double half = std::sin(0.5 * radius);
     const double one_minus_cosine = 2.0 * half * half;
     // Irradiance at normal incidence = radiance * pi sin^2(radius); weight = radiance * 2 pi (1 - cos(radius)).
@@ -126,7 +124,7 @@ std::optional<LightSample> PreparedLight::sample_shape(const Ball& light, const 
   const double inside = std::sqrt(std::max(0.0, light.radius * light.radius - aside));
   return LightSample{.towards = frame_about(way / distance).world(local),
                      .distance = distance * local.z - inside,
-                     .weight = 2.0 * kPi * one_minus_cosine * light.radiance};
+                     .weight = 2.0 * std::numbers::pi * one_minus_cosine * light.radiance};
 }
 
 }  // namespace isolux

@@ -10,9 +10,6 @@
 namespace isolux {
 namespace {
 
-/// Blocks of links a task of a sweep takes.
-constexpr std::size_t kBlocksATask = 4;
-
 /// Adds the light of one site's targets. Two sums at once hide half of the additions' latency.
 template <int channels>
 void add_site(std::span<const std::uint32_t> targets, const float* light, float* sum) {

@@ -17,6 +17,9 @@
 
 namespace isolux {
 
+/// Blocks of links a task of a sweep takes.
+inline constexpr std::size_t kBlocksATask = 4;
+
 /// The links of some sites that were traced together, in the order of tracing: sites of like isovalue that lie close
 /// together, whose ends do so too.
 struct LinkBlock {

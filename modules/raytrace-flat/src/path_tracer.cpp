@@ -3,13 +3,10 @@
 #include <algorithm>
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
-#include <limits>
 #include <numbers>
 
 namespace isolux {
 namespace {
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 double largest_component(const Vec3& v) { return std::max({v.x, v.y, v.z}); }
 

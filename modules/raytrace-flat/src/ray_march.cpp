@@ -6,7 +6,6 @@
 namespace isolux {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr std::size_t kNoBrick = std::numeric_limits<std::size_t>::max();
 
 // Below this part of the largest component a direction's component is zero: its inverse would not be finite.

@@ -14,6 +14,9 @@
 
 namespace isolux {
 
+/// Where nothing stops a ray.
+inline constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
 /// The walk of a ray through bricks and cells (a 3D-DDA, Amanatides & Woo 1987) up to its first root. What
 /// LevelSetIntersector and the backend `scalar` share; see LevelSetIntersector for the meaning of the queries.
 class RayMarch {

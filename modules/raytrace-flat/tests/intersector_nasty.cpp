@@ -9,7 +9,7 @@
 namespace isolux::test {
 namespace {
 
-constexpr double kTiny = 1e-12;  ///< some thousand roundings of a coordinate
+constexpr double kRoundings = 1e-12;  ///< some thousand roundings of a coordinate
 
 Lattice whole(Index3 size) { return {.size = size, .frame = {}}; }
 
@@ -65,8 +65,8 @@ TEST(NastyRays, AlongAxesEdgesAndFacesToAGridPlane) {
     EXPECT_EQ(next(volume, from, {0, 0, -0.125}), 16.0);
     EXPECT_EQ(next(volume, from, {0, 0, 1}), 0.0);
   }
-  for (const double x : {-1.0, 1.0}) EXPECT_NEAR(*next(volume, {2, 2, 3}, {x, 0, -1}), 2.0, kTiny);
-  for (const double x : {-1.0, 1.0}) EXPECT_NEAR(*next(volume, {2, 2, 3}, {x, x, -1}), 2.0, kTiny);
+  for (const double x : {-1.0, 1.0}) EXPECT_NEAR(*next(volume, {2, 2, 3}, {x, 0, -1}), 2.0, kRoundings);
+  for (const double x : {-1.0, 1.0}) EXPECT_NEAR(*next(volume, {2, 2, 3}, {x, x, -1}), 2.0, kRoundings);
 }
 
 TEST(NastyRays, ExactPlacesOnTheBoxsFaces) {
@@ -107,7 +107,7 @@ TEST(NastyRays, IsovaluesOfCornersAreMetAtTheCorners) {
     // Straight onto the corner along a grid line, from as near as no other root can lie before.
     const double before = volume.values(2, i - 1, 3);
     if (before == double(isovalue)) continue;
-    EXPECT_NEAR(*first(volume, {2, i - 0.5, 3}, {0, 1, 0}, isovalue), 0.5, kTiny);
+    EXPECT_NEAR(*first(volume, {2, i - 0.5, 3}, {0, 1, 0}, isovalue), 0.5, kRoundings);
   }
 }
 
@@ -123,7 +123,7 @@ TEST(NastyRays, ADoubleRootIsFoundAFloatBelowItAndNotAFloatAbove) {
   const float corners[8] = {0, 1, 1, 0, 0, 1, 1, 0};
   const auto touched = first(cell(corners), {0, 0, 0.5}, {1, 1, 0}, std::nextafter(0.5f, 0.0f));
   ASSERT_TRUE(touched);
-  EXPECT_NEAR(*touched, 0.5 - std::sqrt(0.5 * 0x1p-25), kTiny);
+  EXPECT_NEAR(*touched, 0.5 - std::sqrt(0.5 * 0x1p-25), kRoundings);
   EXPECT_EQ(first(cell(corners), {0, 0, 0.5}, {1, 1, 0}, std::nextafter(0.5f, 1.0f)), std::nullopt);
 }
 
@@ -138,7 +138,7 @@ TEST(NastyRays, SaddlesLetAndBlockAsTheirQuadrantsDo) {
   EXPECT_EQ(next(volume, {0.25, 0.5, 0.5}, {0, -1, 0}), std::nullopt);
   EXPECT_EQ(next(volume, {0.25, 0.5, 0.5}, {0, 1, 0}), 0.0);
   // From one arm of the cross, through the lower quadrant, to the other arm.
-  EXPECT_NEAR(*next(volume, {0.25, 0.5, 0.5}, {1, -1, 0}), 0.25, kTiny);
+  EXPECT_NEAR(*next(volume, {0.25, 0.5, 0.5}, {1, -1, 0}), 0.25, kRoundings);
 }
 
 TEST(NastyRays, HugeAndTinyValuesGiveTheSameRoots) {
@@ -163,7 +163,7 @@ TEST(NastyRays, TheLengthOfTheDirectionOnlyScalesT) {
       const auto scaled = next(volume, from, way * length, outer);
       ASSERT_EQ(t.has_value(), scaled.has_value());
       if (!t) continue;
-      EXPECT_NEAR(*scaled * length, *t, kTiny);
+      EXPECT_NEAR(*scaled * length, *t, kRoundings);
     }
   }
 }

@@ -6,7 +6,6 @@
 #include <isolux/raytrace_flat/flat_tracer.h>
 
 #include <cmath>
-#include <cstdlib>
 #include <functional>
 #include <string>
 #include <string_view>
@@ -14,14 +13,9 @@
 #include <vector>
 
 #include "analytic_volume.h"
+#include "stress.h"
 
 namespace isolux::test {
-
-/// True where the environment asks for the long campaigns: ISOLUX_STRESS=full.
-[[nodiscard]] inline bool full_stress() {
-  const char* wish = std::getenv("ISOLUX_STRESS");
-  return wish != nullptr && std::string_view(wish) == "full";
-}
 
 /// Sites at world positions; those without a normal are left out.
 [[nodiscard]] inline Sites sites_at(const Volume& volume, const std::vector<Vec3>& world, OuterSide outer,

@@ -15,8 +15,6 @@
 namespace isolux::test {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
-
 TEST(IsovalueColour, IsLinearBetweenKeysAndConstantBeyond) {
   const IsovalueColour colour{.keys = {{1.0f, Vec3f(0.0f)}, {3.0f, Vec3f(1.0f, 0.5f, 0.0f)}, {4.0f, Vec3f(1.0f)}}};
   EXPECT_EQ(colour.at(-5.0f), Vec3f(0.0f));
@@ -120,8 +118,8 @@ TEST(Environment, ImageSamplesHaveTheDensityTheyState) {
     luminous += prepared.radiance(sample.towards).x / sample.density / kDraws;
     const double z = 1.0 - 2.0 * pair.u;
     const double r = std::sqrt(1.0 - z * z);
-    const Vec3 even(r * std::cos(2.0 * kPi * pair.v), r * std::sin(2.0 * kPi * pair.v), z);
-    sphere += prepared.radiance(even).x * 4.0 * kPi / kDraws;
+    const Vec3 even(r * std::cos(2.0 * std::numbers::pi * pair.v), r * std::sin(2.0 * std::numbers::pi * pair.v), z);
+    sphere += prepared.radiance(even).x * 4.0 * std::numbers::pi / kDraws;
   }
   // Two estimates of the whole light; 16384 strata leave about a thousandth.
   EXPECT_NEAR(luminous, sphere, 0.005 * sphere);

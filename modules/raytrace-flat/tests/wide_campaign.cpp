@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "physics_support.h"
+#include "stress.h"
 #include "wide_targets.h"
 
 namespace isolux::test {

@@ -11,6 +11,7 @@
 #include <string>
 
 #include "physics_support.h"
+#include "stress.h"
 #include "wide/rays.h"
 #include "wide_targets.h"
 

@@ -1,21 +1,13 @@
-// Instruction sets for tests of the wide kernels, and how many rays they take.
+// Instruction sets for tests of the wide kernels.
 #pragma once
 
 #include <gtest/gtest.h>
 #include <hwy/targets.h>
 
-#include <algorithm>
-#include <cstdlib>
 #include <string>
 #include <vector>
 
 namespace isolux::test {
-
-/// How many times more rays than usual: ISOLUX_STRESS.
-[[nodiscard]] inline int stress() {
-  const char* text = std::getenv("ISOLUX_STRESS");
-  return text != nullptr ? std::max(1, std::atoi(text)) : 1;
-}
 
 /// The kernels run at one instruction set from here on; 0: at the best again.
 inline void choose_target(int64_t target) {

@@ -8,7 +8,7 @@
 namespace isolux {
 namespace {
 
-constexpr std::size_t kBlock = 4096;
+constexpr std::size_t kSitesABlock = 4096;
 
 /// True if f is constant in every cell that touches the point: its level set there is a solid, not a surface.
 bool is_flat_around(const TrilinearField& field, const Vec3& index) {
@@ -40,7 +40,7 @@ Sites make_sites(const Volume& volume, std::vector<Vec3f> positions, const SiteR
   sites.isovalues.resize(positions.size());
   sites.normals.resize(positions.size());
   std::vector<std::uint8_t> kept(positions.size(), 0);
-  parallel_blocks(positions.size(), kBlock, run, {}, [&](const Block& block) {
+  parallel_blocks(positions.size(), kSitesABlock, run, {}, [&](const Block& block) {
     for (std::size_t i = block.begin; i < block.end; ++i) {
       Vec3f& p = positions[i];
       if (!(std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z))) continue;

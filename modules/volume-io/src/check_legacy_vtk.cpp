@@ -15,11 +15,11 @@ namespace isolux::detail {
 namespace {
 
 constexpr std::string_view kMagic = "# vtk DataFile Version";
-constexpr std::size_t kLongestHeader = 1 << 14;
+constexpr std::size_t kLongestVtkHeader = 1 << 14;
 
 class VtkHeader {
  public:
-  explicit VtkHeader(const std::string& path) : path_(path), bytes_(first_bytes(path, kLongestHeader)) {}
+  explicit VtkHeader(const std::string& path) : path_(path), bytes_(first_bytes(path, kLongestVtkHeader)) {}
 
   /// The next line that is not blank, as words.
   std::vector<std::string> line() {

@@ -15,7 +15,7 @@
 namespace isolux::detail {
 namespace {
 
-constexpr std::size_t kLongestHeader = 1 << 16;
+constexpr std::size_t kLongestMetaHeader = 1 << 16;
 
 struct MetaText {
   std::map<std::string, std::string> fields;
@@ -24,7 +24,7 @@ struct MetaText {
 
 // Lines "Key = Value" up to ElementDataFile, the last one.
 MetaText read_meta_text(const std::string& path) {
-  const std::string bytes = first_bytes(path, kLongestHeader);
+  const std::string bytes = first_bytes(path, kLongestMetaHeader);
   MetaText text;
   while (text.end < bytes.size()) {
     const std::size_t newline = bytes.find('\n', text.end);

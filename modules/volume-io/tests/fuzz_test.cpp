@@ -1,4 +1,5 @@
 #include "samples.h"
+#include "stress.h"
 
 #include <isolux/core/random.h>
 

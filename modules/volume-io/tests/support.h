@@ -96,10 +96,4 @@ inline bool has_reader(std::string_view name) {
   return false;
 }
 
-/// ISOLUX_STRESS: how many times as long a campaign runs; 1 unless set.
-inline int stress() {
-  const char* text = std::getenv("ISOLUX_STRESS");
-  return text == nullptr ? 1 : std::max(1, std::atoi(text));
-}
-
 }  // namespace isolux::test

@@ -2,15 +2,12 @@
 
 #include <algorithm>
 #include <glm/geometric.hpp>
-#include <limits>
 #include <numbers>
 
 #include "directions.h"
 
 namespace isolux::wide {
 namespace {
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 /// Writes a ray of a batch.
 void put_ray(Rays& rays, const Vec3f& origin, float isovalue, const Vec3& towards, const ToIndex& to_index) {

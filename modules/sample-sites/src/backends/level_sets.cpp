@@ -14,7 +14,7 @@ namespace isolux {
 namespace {
 
 constexpr int kTries = 32;  // a line through a cell that misses the level set drawn; corners are missed often
-constexpr std::size_t kBlock = 4096;
+constexpr std::size_t kPointsABlock = 4096;
 /// Rounding a position to float moves the isovalue by less than this part of the range of values, up to some 10,000
 /// voxels an axis.
 constexpr float kRounding = 1e-3f;
@@ -60,7 +60,7 @@ class LevelSetSampler final : public SiteSampler {
     const ValueRange asked = request.isovalues.value_or(all);
     const TrilinearField field(volume);
     std::vector<Vec3f> positions(count);
-    parallel_blocks(count, kBlock, run, "sites", [&](const Block& block) {
+    parallel_blocks(count, kPointsABlock, run, "sites", [&](const Block& block) {
       for (std::size_t i = block.begin; i < block.end; ++i) {
         const Index3 cell = cells.cell(std::size_t(double(i) / double(count) * double(cells.size())));
         const ValueRange own = cell_range(volume, cell);
