@@ -10,6 +10,7 @@
 #include <numbers>
 #include <utility>
 
+#include "extract_many.h"
 #include "peer_vtk.h"
 #include "stats.h"
 #include "suites.h"
@@ -232,6 +233,7 @@ void speed(const SuiteContext& context, SuiteReport& report) {
 SuiteReport run_extract(const SuiteContext& context) {
   SuiteReport report;
   speed(context, report);
+  report.figures.emplace_back(extract_many(context));
   accuracy(context, report);
   return report;
 }
