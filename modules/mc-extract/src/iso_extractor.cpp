@@ -16,12 +16,14 @@ class IsoExtractor::Implementation {
     if (index == Index::kBricks) index_.emplace(volume, run);
   }
 
-  void extract(const ExtractSettings& settings, const Run& run, IndexedMesh& mesh) {
+  void extract(const ExtractSettings& settings, const Run& asked, IndexedMesh& mesh) {
+    const Run run = suited(asked);
     march_.march(settings, run, index(), mesh);
     mc::finish_mesh(mesh, *volume_, settings);
   }
 
-  void extract(const ExtractSettings& settings, const Run& run, IsoMesh& mesh) {
+  void extract(const ExtractSettings& settings, const Run& asked, IsoMesh& mesh) {
+    const Run run = suited(asked);
     if (settings.cap != CapKind::kNone || settings.min_component > 0) {
       IndexedMesh indexed;
       extract(settings, run, indexed);
@@ -37,6 +39,13 @@ class IsoExtractor::Implementation {
   }
 
  private:
+  /// Small volumes are done before a second thread is awake.
+  [[nodiscard]] Run suited(const Run& asked) const {
+    constexpr std::size_t kSmall = std::size_t(1) << 15;
+    Run run = asked;
+    if (volume_->lattice().count() <= kSmall) run.threads = 1;
+    return run;
+  }
   [[nodiscard]] const mc::BrickIndex* index() const { return index_ ? &*index_ : nullptr; }
 
   const Volume* volume_;
