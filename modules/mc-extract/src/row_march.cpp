@@ -14,7 +14,7 @@ namespace isolux::mc {
 
 namespace {
 
-/// Slabs a task takes: a layer of bricks.
+/// Slabs of a layer of bricks.
 constexpr int kLayer = BrickIndex::kHeight;
 
 VertexFrame vertex_frame(const Lattice& lattice, const LevelSet& level_set) {
@@ -101,15 +101,15 @@ const CaseTable& RowMarch::cases() const {
   return case_table(mirrored_ ? CaseTable::Winding::kInwards : CaseTable::Winding::kOutwards);
 }
 
-template <class Body>
-void RowMarch::for_slabs(int layer, const Body& body) const {
-  for (int k = layer * kLayer; k < std::min((layer + 1) * kLayer, march_.nz); ++k) body(k);
+RowMarch::Slabs RowMarch::slabs_of(Layers layers) const {
+  return {.begin = layers.begin * kLayer, .end = std::min(layers.end * kLayer, march_.nz)};
 }
 
 template <class Body>
 void RowMarch::for_each_slab(Layers layers, const Run& run, const Body& body) const {
-  parallel_blocks(std::size_t(layers.end - layers.begin), 1, run, "",
-                  [&](const Block& block) { for_slabs(layers.begin + int(block.begin), body); });
+  const Slabs slabs = slabs_of(layers);
+  parallel_blocks(std::size_t(slabs.end - slabs.begin), 1, run, "",
+                  [&](const Block& block) { body(slabs.begin + int(block.begin)); });
 }
 
 void RowMarch::march(const ExtractSettings& settings, const Run& run, const BrickIndex* index, IndexedMesh& mesh) {
@@ -142,20 +142,19 @@ void RowMarch::march(const ExtractSettings& settings, const Run& run, const Bric
 
 void RowMarch::write_and_classify(Layers here, Layers behind, Layers ahead, const Run& run, IndexedMesh& mesh) {
   // What these three do does not touch: one loop keeps threads busier than three.
-  const int vertices = here.end - here.begin;
-  const int triangles = behind.end - behind.begin;
-  const int all = vertices + triangles + ahead.end - ahead.begin;
-  parallel_blocks(std::size_t(all), 1, run, "", [&](const Block& block) {
+  const Slabs vertices = slabs_of(here);
+  const Slabs triangles = slabs_of(behind);
+  const int before_triangles = vertices.end - vertices.begin;
+  const int before_layers = before_triangles + triangles.end - triangles.begin;
+  parallel_blocks(std::size_t(before_layers + ahead.end - ahead.begin), 1, run, "", [&](const Block& block) {
     const int task = int(block.begin);
-    if (task < vertices) {
+    if (task < before_triangles) {
       if (mesh.positions.empty()) return;
-      for_slabs(here.begin + task,
-                [&](int k) { make_vertices(march_, k, frame_, &mesh.positions[0].x, &mesh.normals[0].x); });
-    } else if (task < vertices + triangles) {
-      for_slabs(behind.begin + task - vertices,
-                [&](int k) { make_triangles(march_, k, cases(), mesh.triangles.data()); });
+      make_vertices(march_, vertices.begin + task, frame_, &mesh.positions[0].x, &mesh.normals[0].x);
+    } else if (task < before_layers) {
+      make_triangles(march_, triangles.begin + task - before_triangles, cases(), mesh.triangles.data());
     } else {
-      classify_layer(ahead.begin + task - vertices - triangles);
+      classify_layer(ahead.begin + task - before_layers);
     }
   });
 }
@@ -190,9 +189,9 @@ void RowMarch::classify(Layers layers, const Run& run) {
 
 void RowMarch::classify_layer(int layer) {
   if (index_ == nullptr) {
-    for_slabs(layer, [&](int k) {
+    const Slabs slabs = slabs_of({layer, layer + 1});
+    for (int k = slabs.begin; k < slabs.end; ++k)
       for (int j = 0; j < march_.ny; ++j) classify_row(march_, j, k);
-    });
     return;
   }
   for (int row = 0; row < index_->rows(); ++row)
@@ -240,13 +239,15 @@ void RowMarch::count_layers(Layers layers, const Run& run, Connectivity connecti
           if (active_words_.own(word, row, layer) != 0) candidates.push_back(pack_word(j, word));
     }
     candidates.push_back(0);  // so that data() is something even where nothing is a candidate
-    for (int k = layer * kLayer; k < std::min((layer + 1) * kLayer, march_.nz); ++k)
+    const Slabs slabs = slabs_of({layer, layer + 1});
+    for (int k = slabs.begin; k < slabs.end; ++k)
       count_slab(march_, k, candidates.data(), candidates.size() - 1, connectivity);
   });
 }
 
 void RowMarch::number(Layers layers) {
-  for (int k = layers.begin * kLayer; k < std::min(layers.end * kLayer, march_.nz); ++k) {
+  const Slabs slabs = slabs_of(layers);
+  for (int k = slabs.begin; k < slabs.end; ++k) {
     Slab& slab = slabs_[std::size_t(k)];
     const Counts& total = slab.total;
     slab.first.vertex_x = std::uint32_t(size_.vertices);

@@ -25,8 +25,8 @@ struct MeshSize {
 void require_countable(const MeshSize& size, float isovalue);
 
 /// Marching cubes by rows: bits, counts, running sums, then vertices and connectivity straight to their places, in
-/// parallel by layers of four slabs. Numbers do not depend on threads: they follow the grid. With an index the volume
-/// is read only where the level set is, unless that is in so many bricks that reading all is quicker.
+/// parallel by slabs and layers of four slabs. Numbers do not depend on threads: they follow the grid. With an index
+/// the volume is read only where the level set is, unless that is in so many bricks that reading all is quicker.
 class RowMarch {
  public:
   /// Where more of the bricks hold both sides, the index saves nothing: bits by bricks cost more than by rows. On the
@@ -53,6 +53,11 @@ class RowMarch {
     int begin;
     int end;
   };
+  /// Slabs [begin, end): a grid plane and what it owns each.
+  struct Slabs {
+    int begin;
+    int end;
+  };
   void begin(const ExtractSettings& settings, const Run& run, const BrickIndex* index);
   void classify(Layers layers, const Run& run);
   void classify_layer(int layer);
@@ -64,9 +69,8 @@ class RowMarch {
   [[nodiscard]] const CaseTable& cases() const;
   [[nodiscard]] int layer_count() const;
   [[nodiscard]] int layers_at_once(const Run& run) const;
-  template <class Body>
-  void for_slabs(int layer, const Body& body) const;
-  /// body(k) for every slab of the layers, a layer a task.
+  [[nodiscard]] Slabs slabs_of(Layers layers) const;
+  /// body(k) for every slab of the layers, a slab a task.
   template <class Body>
   void for_each_slab(Layers layers, const Run& run, const Body& body) const;
   void link_border(const Run& run, const HalfEdgeArrays& out) const;
