@@ -23,7 +23,7 @@ std::unique_ptr<Resampler> sparse_resampler(const SuiteContext& context) {
   const bool has_tree = std::any_of(backends.begin(), backends.end(), [](const BackendInfo& info) {
     return info.name == "cgal_kdtree" && info.unavailable.empty();
   });
-  return context.stages.resamplers.create(has_tree ? "cgal_kdtree" : "cell_grid", {{"k", "4"}});
+  return context.stages.resamplers.create(has_tree ? "cgal_kdtree" : "cell_grid", {{"k", "4"}, {"exponent", "2"}});
 }
 
 PointLight judge_light(const Target& target, const std::vector<Vec3f>& points, int rays, const SuiteContext& context,

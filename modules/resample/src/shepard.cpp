@@ -11,9 +11,16 @@
 namespace isolux {
 
 void ShepardOptions::describe(OptionVisitor& option) {
-  option("k", k, {.min = 0, .max = 1024, .help = "nearest samples taken; 0: all within the radius. The thesis: 11"});
+  option("k", k,
+         {.min = -1,
+          .max = 1024,
+          .help = "nearest samples taken; 0: all within the radius; -1: as many as foretell samples best from each "
+                  "other, the more the noisier they are. The thesis: 11"});
   option("exponent", exponent,
-         {.min = 0.0, .max = 64.0, .help = "p of the weight 1/d^p of a sample at distance d. The thesis: 0.5"});
+         {.min = -1.0,
+          .max = 64.0,
+          .help = "p of the weight 1/d^p of a sample at distance d; below 0: what foretells samples best from each "
+                  "other, the less the noisier they are. The thesis: 0.5"});
   option(
       "distance", distance,
       {{"euclidean", Distance::kEuclidean}, {"city_block", Distance::kCityBlock}, {"chebyshev", Distance::kChebyshev}},

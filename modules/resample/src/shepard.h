@@ -15,8 +15,10 @@ namespace isolux {
 /// What Shepard's interpolation (Shepard, "A two-dimensional interpolation function for irregularly-spaced data", ACM
 /// 1968) is given, the same for every backend that computes it.
 struct ShepardOptions {
-  int k = 11;
-  double exponent = 2.0;
+  static constexpr int kFromSamples = -1;  ///< chosen_by_samples() fills it in, as any exponent below 0
+
+  int k = kFromSamples;
+  double exponent = kFromSamples;
   Distance distance = Distance::kEuclidean;
   double radius = 0.0;
   double isovalue_length = 0.0;
@@ -27,7 +29,7 @@ struct ShepardOptions {
 /// Samples and texels in the space that their distances are measured in.
 class ShepardSpace {
  public:
-  /// \throw InvalidInput if k and radius are both 0, or the samples do not suit.
+  /// \pre nothing is kFromSamples \throw InvalidInput if k and radius are both 0, or the samples do not suit.
   ShepardSpace(const Volume& volume, const SampleSet& samples, const ShepardOptions& options);
 
   /// \pre `index` (index space) as a float is where a sample at the same place has it, so that they meet exactly.

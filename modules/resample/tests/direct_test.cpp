@@ -36,6 +36,31 @@ TEST(Direct, PutsEachSampleAtItsTexel) {
   }
 }
 
+// Trilinear reading of a ramp is the ramp between the outermost texel centres, whatever the ratio of texels to cells is
+// and if it is another one an axis; float light of size 3 is rounded to 2e-7.
+TEST(Direct, ReproducesRampsAtAnyRatioOfTexelsToCells) {
+  const Volume volume = ramp_volume({9, 13, 7}, {0.5, 1.0, 2.5});
+  const Vec3 cells(volume.lattice().size - 1);
+  const auto ramp = [](const Vec3& p) { return float(0.25 + 0.125 * p.x + 0.0625 * p.y + 0.25 * p.z); };
+  for (const Vec3 ratio : {Vec3(0.5), Vec3(1.0), Vec3(1.5), Vec3(2.0), Vec3(3.0), Vec3(0.5, 1.75, 3.0)}) {
+    const Lattice texels = cell_lattice(volume.lattice(), Index3(cells * ratio));
+    const IndexToWorld to_volume = index_to_index(texels, volume.lattice());
+    SampleSet samples;
+    for (std::size_t t = 0; t < texels.count(); ++t) {
+      const auto nx = std::size_t(texels.size.x);
+      const auto ny = std::size_t(texels.size.y);
+      const Vec3 p = to_volume.world(Vec3(t % nx, t / nx % ny, t / (nx * ny)));
+      add_sample(samples, volume, p, {ramp(p)});
+    }
+    const ResampledGrid result = resamplers().create("direct")->resample(volume, samples, texels, {});
+    const LightReader reader(volume, result.grid);
+    for (const Vec3 place : {Vec3(0.3, 0.5, 0.7), Vec3(0.21, 0.77, 0.4), Vec3(0.5)}) {
+      EXPECT_NEAR(reader.at_index(place * cells).x, ramp(place * cells), 1e-6);
+      EXPECT_NEAR(reader.at_world(volume.lattice().frame.world(place * cells)).x, ramp(place * cells), 1e-6);
+    }
+  }
+}
+
 TEST(Direct, LeavesTexelsWithoutSampleUnlit) {
   const Volume volume = ramp_volume({4, 4, 4});
   SampleSet samples;

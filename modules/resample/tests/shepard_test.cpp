@@ -212,6 +212,38 @@ TEST_P(Shepard, TellsLevelSetsApartByIsovalue) {
   EXPECT_EQ(by_isovalue, 1.0f);
 }
 
+/// Root mean square of what the texels of bumpy light are wrong by, the samples' noise uniform of this root mean
+/// square.
+double error_beside_noise(const std::string& backend, double noise, const Settings& settings) {
+  const Volume volume = ramp_volume({13, 13, 13});
+  const Lattice texels = cell_lattice(volume.lattice());
+  SampleSet samples = random_samples(volume, 1728, 1, bumpy);
+  for (std::size_t s = 0; s < samples.size(); ++s)
+    samples.radiance[s] += float(noise * std::sqrt(12.0) * (RandomStream(7, s).uniform_double() - 0.5));
+  const IndexToWorld to_volume = index_to_index(texels, volume.lattice());
+  const ResampledGrid result = resamplers().create(backend, settings)->resample(volume, samples, texels, {});
+  double squares = 0.0;
+  for (std::size_t t = 0; t < texels.count(); ++t) {
+    const Vec3 p = to_volume.world(Vec3(t % 12, t / 12 % 12, t / 144));
+    squares += std::pow(double(result.grid.values[t]) - double(bumpy(p, 0)), 2.0);
+  }
+  return std::sqrt(squares / double(texels.count()));
+}
+
+// Near samples alone serve exact ones and many alike serve noisy ones; what is chosen must be within a tenth of the
+// better of both at either end, which neither is by itself.
+TEST_P(Shepard, FollowsTheNoiseOfTheSamples) {
+  const Settings near{{"k", "11"}, {"exponent", "2"}};
+  const Settings alike{{"k", "64"}, {"exponent", "0"}};
+  for (const double noise : {0.0, 1.5}) {
+    const double best =
+        std::min(error_beside_noise(GetParam(), noise, near), error_beside_noise(GetParam(), noise, alike));
+    EXPECT_LT(error_beside_noise(GetParam(), noise, {}), 1.1 * best) << noise;
+  }
+  EXPECT_GT(error_beside_noise(GetParam(), 1.5, near), 1.3 * error_beside_noise(GetParam(), 1.5, {}));
+  EXPECT_GT(error_beside_noise(GetParam(), 0.0, alike), 1.3 * error_beside_noise(GetParam(), 0.0, {}));
+}
+
 TEST_P(Shepard, IsTheSameForAnyNumberOfThreads) {
   const Volume volume = ramp_volume({20, 21, 22});
   const SampleSet samples = random_samples(volume, 3000, 1, bumpy);

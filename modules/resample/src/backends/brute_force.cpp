@@ -1,3 +1,4 @@
+#include "shepard_choice.h"
 #include "shepard_resample.h"
 
 namespace isolux::backends {
@@ -10,8 +11,9 @@ class BruteForce final : public Resampler {
 
   ResampledGrid resample(const Volume& volume, const SampleSet& samples, const Lattice& texels,
                          const Run& run) const override {
-    const ShepardSpace space(volume, samples, options_);
-    return with_metric(options_.distance, [&](auto metric) {
+    const ShepardOptions options = chosen_by_samples(options_, volume, samples, run);
+    const ShepardSpace space(volume, samples, options);
+    return with_metric(options.distance, [&](auto metric) {
       using Metric = decltype(metric);
       const auto search = [&](const Point& query, std::vector<Neighbour>& found) {
         NearestNeighbours nearest(space.limits(), found);
@@ -19,7 +21,7 @@ class BruteForce final : public Resampler {
         for (const Point& p : space.samples()) nearest.offer(reach<Metric>(query, p), sample++);
         nearest.finish();
       };
-      return shepard_resample(volume, samples, texels, options_, space, search, run);
+      return shepard_resample(volume, samples, texels, options, space, search, run);
     });
   }
 

@@ -1,4 +1,5 @@
 #include "sample_bins.h"
+#include "shepard_choice.h"
 #include "shepard_resample.h"
 
 namespace isolux::backends {
@@ -11,13 +12,14 @@ class CellGrid final : public Resampler {
 
   ResampledGrid resample(const Volume& volume, const SampleSet& samples, const Lattice& texels,
                          const Run& run) const override {
-    const ShepardSpace space(volume, samples, options_);
+    const ShepardOptions options = chosen_by_samples(options_, volume, samples, run);
+    const ShepardSpace space(volume, samples, options);
     const SampleBins bins(space.samples(), space.far_corner(), kSamplesABin);
-    return with_metric(options_.distance, [&](auto metric) {
+    return with_metric(options.distance, [&](auto metric) {
       const auto search = [&](const Point& query, std::vector<Neighbour>& found) {
         bins.search<decltype(metric)>(query, space.limits(), found);
       };
-      return shepard_resample(volume, samples, texels, options_, space, search, run);
+      return shepard_resample(volume, samples, texels, options, space, search, run);
     });
   }
 

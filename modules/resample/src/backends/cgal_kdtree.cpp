@@ -6,6 +6,7 @@
 #include <cmath>
 #include <vector>
 
+#include "shepard_choice.h"
 #include "shepard_resample.h"
 
 namespace isolux::backends {
@@ -135,11 +136,12 @@ class CgalKdTree final : public Resampler {
 
   ResampledGrid resample(const Volume& volume, const SampleSet& samples, const Lattice& texels,
                          const Run& run) const override {
-    const ShepardSpace space(volume, samples, options_);
-    return with_metric(options_.distance, [&](auto metric) {
+    const ShepardOptions options = chosen_by_samples(options_, volume, samples, run);
+    const ShepardSpace space(volume, samples, options);
+    return with_metric(options.distance, [&](auto metric) {
       const Tree<decltype(metric)> tree(space);
       const auto search = [&](const Point& query, std::vector<Neighbour>& found) { tree.search(query, found); };
-      return shepard_resample(volume, samples, texels, options_, space, search, run);
+      return shepard_resample(volume, samples, texels, options, space, search, run);
     });
   }
 
