@@ -4,6 +4,8 @@
 
 #include <array>
 #include <cmath>
+#include <glm/common.hpp>
+#include <vector>
 
 namespace isolux {
 namespace {
@@ -33,6 +35,33 @@ TEST(TextureMapping, IsTheHalfTexelCorrectionForTexelsAtTheVoxels) {
     const double n = volume.size[a];
     for (const double place : {0.0, 0.3, 1.0})
       EXPECT_NEAR(mapping.scale[a] * place + mapping.offset[a], (place * (n - 1) + 0.5) / n, 1e-12);
+  }
+}
+
+// A ramp sampled at the texel centres and filtered linearly gives itself back between the outermost centres if, and
+// only if, texture coordinates hit the centres: the half texel, at any ratio of texels to cells and a different one an
+// axis.
+TEST(TextureMapping, ReproducesRampsAtAnyRatioOfTexelsToCells) {
+  const Lattice volume = oblique_volume({9, 13, 25});
+  const auto ramp = [](const Vec3& world) { return 0.7 * world.x - 1.3 * world.y + 0.2 * world.z; };
+  std::vector<Lattice> lattices{voxel_lattice(volume)};
+  for (const Vec3 ratio : {Vec3(0.5), Vec3(1.0), Vec3(1.5), Vec3(2.0), Vec3(3.0), Vec3(0.5, 1.75, 3.0)})
+    lattices.push_back(cell_lattice(volume, Index3(Vec3(volume.size - 1) * ratio)));
+  for (const Lattice& texels : lattices) {
+    const TextureMapping mapping = texture_mapping(texels, volume);
+    for (const Vec3 place : {Vec3(0.3, 0.5, 0.7), Vec3(0.21, 0.77, 0.4), Vec3(0.5)}) {
+      // Linear filtering as OpenGL defines it: u N - 1/2 lies between two texels.
+      const Vec3 at = (mapping.scale * place + mapping.offset) * Vec3(texels.size) - 0.5;
+      const Index3 low(glm::floor(at));
+      double read = 0.0;
+      for (int q = 0; q < 8; ++q) {
+        const Index3 step(q & 1, q >> 1 & 1, q >> 2);
+        const Vec3 part = glm::mix(1.0 - (at - Vec3(low)), at - Vec3(low), Vec3(step));
+        read += part.x * part.y * part.z * ramp(texels.frame.world(Vec3(low + step)));
+      }
+      // Double rounding some hundred steps from the origin.
+      EXPECT_NEAR(read, ramp(volume.frame.world(place * Vec3(volume.size - 1))), 1e-9) << texels.size.x;
+    }
   }
 }
 
