@@ -111,6 +111,9 @@ class Bake(CommandLineTest):
     def test_texels_lattice_and_compression(self):
         self.bake("--texels", "5x6x7")
         self.assertEqual(nrrd_header(self.path("light.nrrd"))[0]["sizes"], "5 6 7")
+        self.bake("--texels", "auto", "--bounces", 0, "--report", "report.json")
+        self.assertEqual(nrrd_header(self.path("light.nrrd"))[0]["sizes"], "4 4 4")  # white: the fewest will do
+        self.assertLess(self.report()["texel_error"], 0.05)
         self.bake("--lattice", "voxels")
         fields = nrrd_header(self.path("light.nrrd"))[0]
         self.assertEqual(fields["sizes"], "16 16 16")

@@ -1,4 +1,5 @@
 #include <fmt/format.h>
+#include <isolux/bake/choose_texels.h>
 #include <isolux/bake/light_metadata.h>
 
 #include <algorithm>
@@ -13,6 +14,10 @@
 namespace isolux {
 namespace {
 
+constexpr const char* kChosen = "auto";
+/// What --texels auto lets the texels be wrong by: a little less than one a cell is on real volumes.
+constexpr double kTexelError = 0.05;
+
 struct Options {
   VolumeOptions volume;
   TraceOptions trace;
@@ -24,7 +29,7 @@ struct Options {
   double rmse = 0.0;
   double time = 0.0;
   std::string error_grid;
-  int texels_a_cell = 0;
+  double texels_a_cell = 0.0;
   std::size_t samples = 0;
   std::string sampler;
   std::string resampler;
@@ -43,7 +48,7 @@ BakeSettings bake_settings(const Options& options, const Stages& stages) {
     settings.bounce_method = options.bounce_method == "paths" ? BounceMethod::kPaths : BounceMethod::kIterated;
   }
   settings.lattice = options.lattice == "voxels" ? TexelLattice::kVoxels : TexelLattice::kCells;
-  if (!options.texels.empty()) settings.texels = parse_size3("--texels", options.texels);
+  if (!options.texels.empty() && options.texels != kChosen) settings.texels = parse_size3("--texels", options.texels);
   settings.texels_a_cell = options.texels_a_cell;
   if (!options.iso_range.empty()) settings.isovalues = parse_range("--iso-range", options.iso_range);
   settings.target_rmse = options.rmse;
@@ -78,10 +83,23 @@ void report_bake(const BakeResult& result, Session& session) {
   report["rmse_estimate"] = result.rmse_estimate;
 }
 
+/// --texels auto
+void choose_size(const Options& options, const Volume& volume, const Scene& scene, BakeSettings& settings,
+                 Session& session) {
+  const double target = options.rmse > 0.0 ? options.rmse : kTexelError;
+  const TexelChoice chosen = session.timed(
+      "texels", [&] { return choose_texels(volume, scene, settings, target, session.stages, session.run); });
+  settings.texels = chosen.texels;
+  session.report["texel_error"] = chosen.error;
+  session.say(fmt::format("{}x{}x{} texels, wrong by about {:.3f} between them (asked {})", chosen.texels.x,
+                          chosen.texels.y, chosen.texels.z, chosen.error, target));
+}
+
 void run_bake(const Options& options, Session& session) {
-  const BakeSettings settings = bake_settings(options, session.stages);
+  BakeSettings settings = bake_settings(options, session.stages);
   const Volume volume = options.volume.read(session);
   const Scene scene = session.timed("read", [&] { return options.trace.scene(); });
+  if (options.texels == kChosen) choose_size(options, volume, scene, settings, session);
   BakeResult result = bake(volume, scene, settings, session.stages, session.run);
   for (const auto& [stage, seconds] : result.seconds) session.add_seconds(stage, seconds);
   const double trace_seconds = std::max(result.seconds["trace"], 1e-9);
@@ -115,13 +133,18 @@ void add_bake_command(CLI::App& program, Session& session) {
           "--iso-range", options->iso_range,
           "light only these level sets: LO:HI, or H:H for one; with --resampler fit more accurately than all at once")
       ->type_name("LO:HI");
-  command.add_option("--texels", options->texels, "size of the light's grid (default: one texel a cell)")
-      ->type_name("NXxNYxNZ");
   command
-      .add_option("--texels-a-cell", options->texels_a_cell,
-                  "texels a cell on each axis (default 1; with --resampler fit 2 for one isovalue): 2 with the fit is "
-                  "the best light")
-      ->check(CLI::Range(1, 8))
+      .add_option("--texels", options->texels,
+                  "size of the light's grid (default: one texel a cell); auto: the fewest that are wrong by no more "
+                  "than --rmse "
+                  "(default .05) between them")
+      ->type_name("NXxNYxNZ|auto");
+  command
+      .add_option(
+          "--texels-a-cell", options->texels_a_cell,
+          "texels a cell on each axis, 1.5 too (default 1; with --resampler fit 2 for one isovalue): 2 with the fit is "
+          "the best light")
+      ->check(CLI::Range(0.125, 8.0))
       ->type_name("N");
   command.add_option("--lattice", options->lattice, "texels at the cell centres (default) or at the voxels")
       ->check(CLI::IsMember({"cells", "voxels"}));

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 #include <isolux/bake/bake.h>
+#include <isolux/bake/choose_texels.h>
 #include <isolux/bake/kept_rays.h>
 #include <isolux/core/error.h>
 #include <isolux/core/stopwatch.h>
@@ -71,7 +72,8 @@ Lattice texel_lattice(const Lattice& volume, const BakeSettings& settings) {
     return voxel_lattice(volume);
   }
   if (settings.texels) return cell_lattice(volume, *settings.texels);
-  return cell_lattice(volume, (volume.size - 1) * std::max(1, settings.texels_a_cell));
+  const double ratio = settings.texels_a_cell > 0.0 ? settings.texels_a_cell : 1.0;
+  return cell_lattice(volume, texels_by_ratio(volume, ratio));
 }
 
 BakeSettings with_defaults(BakeSettings settings, const Stages& stages) {

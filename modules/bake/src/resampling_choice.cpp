@@ -8,7 +8,7 @@ namespace {
 // docs/resampling.md has the curves behind these.
 constexpr double kFitSites = 8.0;   // a texel and cell
 constexpr double kFineSites = 2.0;  // a texel
-constexpr int kOneIsovalueTexels = 2;
+constexpr double kOneIsovalueTexels = 2.0;
 /// A cell that a level set only just cuts may get no site; its texels are next to lit ones.
 constexpr int kFilledLayers = 2;
 
@@ -29,10 +29,10 @@ void choose_resampling(BakeSettings& settings) {
   }
   if (settings.resampler.name.empty())
     settings.resampler.name = settings.sampler.name == "texels" ? "direct" : "cell_grid";
-  if (settings.texels_a_cell == 0) settings.texels_a_cell = fit && one_isovalue(settings) ? kOneIsovalueTexels : 1;
+  if (settings.texels_a_cell == 0.0) settings.texels_a_cell = fit && one_isovalue(settings) ? kOneIsovalueTexels : 1.0;
   if (!fit) return;
   // Finer texels tell level sets apart themselves; all sites of one isovalue say nothing of how light changes with it.
-  const bool fine = settings.texels_a_cell > 1;
+  const bool fine = settings.texels_a_cell > 1.0;
   if (fine || one_isovalue(settings)) settings.resampler.settings.try_emplace("slopes", "false");
   if (settings.sites_a_cell == 0.0) {
     settings.sites_a_cell = fine ? kFineSites * std::pow(settings.texels_a_cell, 3) : kFitSites;

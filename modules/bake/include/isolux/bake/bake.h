@@ -38,7 +38,7 @@ struct BakeSettings {
   BounceMethod bounce_method = BounceMethod::kDefault;
   TexelLattice lattice = TexelLattice::kCells;
   std::optional<Index3> texels;  ///< of kCells only; default texels_a_cell
-  int texels_a_cell = 0;         ///< on each axis, of kCells; 0: what suits the resampler
+  double texels_a_cell = 0.0;    ///< on each axis, of kCells; 0: what suits the resampler
   std::size_t samples = 0;       ///< sites of scattering samplers; 0: sites_a_cell
   double sites_a_cell = 0.0;     ///< of the cells that can be lit; 0: what suits the resampler, one a texel mostly
   std::optional<ValueRange> isovalues;  ///< light only these level sets

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <isolux/bake/bake.h>
+
+namespace isolux {
+
+/// A size of the illumination grid and what it is wrong by.
+struct TexelChoice {
+  Index3 texels{1};
+  double error = 0.0;  ///< estimated rms of what is read between exact texels less what is there
+  TraceCounters counters;
+};
+
+/// The fewest texels, of a quarter to two a cell and axis, whose interpolation is wrong by at most `target`; where none
+/// are, those that are least wrong. Measured, not guessed: at a thousand random points of random level sets (of
+/// settings.isovalues, where there are any) e is traced there and at the eight texels around; rays' noise is taken out
+/// of the difference. Of settings the isovalues, the tracer and trace count, with at most 64 rays a texel. Other
+/// resamplers than `direct` can be less wrong. Cost: half a million rays a size tried. The same for any number of
+/// threads. \throw as bake()
+[[nodiscard]] TexelChoice choose_texels(const Volume& volume, const Scene& scene, const BakeSettings& settings,
+                                        double target, const Stages& stages, const Run& run);
+
+/// So many texels a cell and axis: at least one on each. \pre ratio > 0
+[[nodiscard]] Index3 texels_by_ratio(const Lattice& volume, double ratio);
+
+}  // namespace isolux

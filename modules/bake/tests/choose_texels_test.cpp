@@ -1,0 +1,95 @@
+// The size of the illumination grid by measured error.
+#include <gtest/gtest.h>
+#include <isolux/bake.h>
+#include <isolux/bake/choose_texels.h>
+#include <isolux/core/error.h>
+#include <isolux/resample.h>
+#include <isolux/volume_io/read.h>
+
+#include <cmath>
+
+namespace isolux::test {
+namespace {
+
+const Stages& stages() {
+  static const Stages all = builtin_stages();
+  return all;
+}
+
+BakeSettings without_bounces() {
+  BakeSettings settings;
+  settings.trace.bounces = 0;
+  return settings;
+}
+
+TexelChoice choice(const Volume& volume, double target, const BakeSettings& settings = without_bounces()) {
+  return choose_texels(volume, {}, settings, target, stages(), {});
+}
+
+// Every level set of the sphere that closes inside the box is white and those that the box cuts are too: one number
+// would do, and the fewest texels that are tried do.
+TEST(ChooseTexels, TakesTheFewestWhereLightIsEven) {
+  const TexelChoice chosen = choice(read_volume("gen:sphere:17"), 0.03);
+  EXPECT_EQ(chosen.texels, Index3(4));
+  EXPECT_LE(chosen.error, 0.03);
+}
+
+TEST(ChooseTexels, TakesMoreForLessError) {
+  const Volume volume = read_volume("gen:gyroid:20");
+  const TexelChoice rough = choice(volume, 0.2);
+  const TexelChoice fine = choice(volume, 0.05);
+  EXPECT_GT(fine.texels.x, rough.texels.x);
+  EXPECT_LE(fine.error, 0.05);
+  EXPECT_LE(rough.error, 0.2);
+}
+
+// Noise has no texels that serve it: what is chosen must say so.
+TEST(ChooseTexels, SaysWhatItMissesTheTargetBy) {
+  const TexelChoice chosen = choice(read_volume("gen:noise:12"), 1e-3);
+  EXPECT_GT(chosen.error, 0.02);
+}
+
+// The estimate against a bake of that size, read at other random points: both are a root mean square over a thousand
+// points or so, each known to some 5 percent; weights of area and the texels' rays make up the rest of a quarter.
+TEST(ChooseTexels, ForetellsTheErrorOfABake) {
+  const Volume volume = read_volume("gen:gyroid:20");
+  BakeSettings settings = without_bounces();
+  const TexelChoice chosen = choice(volume, 0.06, settings);
+  settings.texels = chosen.texels;
+  settings.trace.rays = 512;
+  const BakeResult baked = bake(volume, {}, settings, stages(), {});
+  const LightReader reader(volume, baked.light);
+  Sites sites = stages().samplers.create("random")->sample(volume, {.count = 1500}, {.seed = 9});
+  const auto traced =
+      stages().tracers.create("")->trace(volume, {}, std::move(sites), {.rays = 512, .bounces = 0}, {.seed = 10});
+  const TrilinearField field(volume);
+  double squares = 0.0;
+  double total = 0.0;
+  for (std::size_t s = 0; s < traced.samples.size(); ++s) {
+    const Vec3 at(traced.samples.sites.positions[s]);
+    const double weight = glm::length(field.world_gradient(at, GradientKind::kCentralDifferences));
+    squares += weight * std::pow(double(reader.at_index(at).x) - double(traced.samples.radiance[s]), 2.0);
+    total += weight;
+  }
+  const double error = std::sqrt(squares / total);
+  EXPECT_NEAR(chosen.error / error, 1.0, 0.25);
+}
+
+TEST(ChooseTexels, KnowsUnevenVolumesAndKnownIsovalues) {
+  Volume volume = read_volume("gen:gyroid:20");
+  BakeSettings settings = without_bounces();
+  settings.isovalues = ValueRange{0.1f, 0.1f};
+  const TexelChoice chosen = choice(volume, 0.05, settings);
+  EXPECT_GE(chosen.texels.x, 5);
+  EXPECT_EQ(texels_by_ratio({.size = {41, 9, 2}, .frame = {}}, 0.25), Index3(10, 2, 1));
+  EXPECT_EQ(texels_by_ratio({.size = {41, 9, 2}, .frame = {}}, 1.5), Index3(60, 12, 2));
+}
+
+TEST(ChooseTexels, RefusesTexelsAtTheVoxels) {
+  BakeSettings settings = without_bounces();
+  settings.lattice = TexelLattice::kVoxels;
+  EXPECT_THROW(choice(read_volume("gen:sphere:8"), 0.1, settings), InvalidInput);
+}
+
+}  // namespace
+}  // namespace isolux::test
