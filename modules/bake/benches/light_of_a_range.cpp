@@ -56,36 +56,19 @@ struct Scheme {
   std::string sampler;
   double sites;  ///< a crossed cell
   int rays;
-  int texels;  ///< a cell and axis
+  double texels;  ///< a cell and axis
   Settings settings;
 };
 
-/// Texels in the bricks that the range needs, a voxel of the whole volume.
-double brick_texels_a_voxel(const Case& c, int texels, int brick) {
-  const Index3 cells = c.whole->lattice().size - 1;
-  const Index3 bricks = (cells * texels + (brick - 1)) / brick;
-  std::vector<std::uint8_t> needed(std::size_t(bricks.x) * std::size_t(bricks.y) * std::size_t(bricks.z), 0);
-  for (int k = 0; k < cells.z; ++k)
-    for (int j = 0; j < cells.y; ++j)
-      for (int i = 0; i < cells.x; ++i) {
-        const ValueRange own = cell_range(*c.whole, {i, j, k});
-        if (own.low == own.high || own.low > c.range.high || own.high < c.range.low) continue;
-        // Texels are read between the centres before and behind the cell.
-        const Index3 low = glm::max(Index3(i, j, k) * texels - 1, Index3(0)) / brick;
-        const Index3 high = glm::min((Index3(i, j, k) + 1) * texels - 1, cells * texels - 1) / brick;
-        for (int z = low.z; z <= high.z; ++z)
-          for (int y = low.y; y <= high.y; ++y)
-            for (int x = low.x; x <= high.x; ++x)
-              needed[(std::size_t(z) * std::size_t(bricks.y) + std::size_t(y)) * std::size_t(bricks.x) +
-                     std::size_t(x)] = 1;
-      }
-  const auto count = double(std::count(needed.begin(), needed.end(), std::uint8_t(1)));
-  return count * std::pow(brick + 1, 3) / double(c.whole->lattice().count());
+/// Numbers in the bricks of the whole volume that the range needs, page table included, a voxel.
+double stored_a_voxel(const Case& c, const Scheme& scheme) {
+  IlluminationGrid light(texels_of(*c.whole, scheme.texels), 1);
+  if (scheme.settings.count("slopes") == 0) light.detail.slopes = light.values;
+  return double(make_light_bricks(*c.whole, light, c.range).stored()) / double(c.whole->lattice().count());
 }
 
 void light_of_a_range(benchmark::State& state, const Scheme& scheme) {
   const auto resampler = resamplers().create("fit", scheme.settings);
-  const double numbers = scheme.settings.count("slopes") != 0 ? 1.0 : 2.0;
   SurfaceErrors errors;
   std::vector<double> stored;
   for (auto _ : state) {
@@ -93,8 +76,7 @@ void light_of_a_range(benchmark::State& state, const Scheme& scheme) {
     stored.clear();
     state.PauseTiming();
     for (const Case& c : cases(scheme.width)) {
-      const Index3 cells = c.block->lattice().size - 1;
-      const Lattice texels = cell_lattice(c.block->lattice(), cells * scheme.texels);
+      const Lattice texels = texels_of(*c.block, scheme.texels);
       const SiteRequest request{
           .texels = texels, .per_texel = scheme.sites / std::pow(scheme.texels, 3), .isovalues = c.range};
       const SampleSet samples =
@@ -108,7 +90,7 @@ void light_of_a_range(benchmark::State& state, const Scheme& scheme) {
       SampleSet pooled;
       for (const SampleSet& reference : c.references) append(pooled, reference);
       errors.add(reader, pooled);
-      stored.push_back(numbers * brick_texels_a_voxel(c, scheme.texels, 4));
+      stored.push_back(stored_a_voxel(c, scheme));
     }
     state.ResumeTiming();
   }
@@ -130,6 +112,13 @@ const int kRegistered = [] {
       {"range/16x32", {0.1f, "level_sets", 16, 32, 1, {}}},
       {"range/16x64", {0.1f, "level_sets", 16, 64, 1, {}}},
       {"range/8x64_2_an_axis_value", {0.1f, "level_sets", 8, 64, 2, value}},
+      {"range/32x64", {0.1f, "level_sets", 32, 64, 1, {}}},
+      {"range/8x64_1.25", {0.1f, "level_sets", 8, 64, 1.25, {}}},
+      {"range/16x64_1.25", {0.1f, "level_sets", 16, 64, 1.25, {}}},
+      {"range/16x64_1.5", {0.1f, "level_sets", 16, 64, 1.5, {}}},
+      {"one/16x64_1.5_value", {0.0f, "level_sets", 16, 64, 1.5, value}},
+      {"one/16x64_1.7_value", {0.0f, "level_sets", 16, 64, 1.7, value}},
+      {"one/16x64_1.25", {0.0f, "level_sets", 16, 64, 1.25, {}}},
       {"one/4x64_plain", {0.0f, "level_sets", 4, 64, 1, plain}},
       {"one/4x64_value", {0.0f, "level_sets", 4, 64, 1, value}},
       {"one/4x64", {0.0f, "level_sets", 4, 64, 1, {}}},

@@ -42,11 +42,11 @@ std::vector<std::unique_ptr<Case>>& cases() {
 
 struct Scheme {
   std::string sampler;
-  int sites;  ///< a texel
-  int rays;   ///< a site
+  double sites;  ///< a texel
+  int rays;      ///< a site
   std::string resampler;
   Settings settings;
-  int texels = 1;  ///< a cell and axis
+  double texels = 1;  ///< a cell and axis
 };
 
 const SampleSet& samples_of(Case& c, const Scheme& scheme, const Lattice& texels) {
@@ -59,7 +59,7 @@ const SampleSet& samples_of(Case& c, const Scheme& scheme, const Lattice& texels
     Sites sites = sampler->sample(c.volume, request, {.seed = 3});
     if (scheme.sites > 1) {
       // One a texel of what can be lit at all, times as many.
-      request.count = std::size_t(scheme.sites) * sites.size();
+      request.count = std::size_t(scheme.sites * double(sites.size()));
       sites = sampler->sample(c.volume, request, {.seed = 3});
     }
     set = trace(c.volume, std::move(sites), scheme.rays, 5);
@@ -76,8 +76,7 @@ void light_on_surface(benchmark::State& state, const Scheme& scheme) {
     texel_count = 0;
     errors = {};
     for (auto& c : cases()) {
-      const Index3 cells = c->volume.lattice().size - 1;
-      const Lattice texels = cell_lattice(c->volume.lattice(), cells * scheme.texels);
+      const Lattice texels = texels_of(c->volume, scheme.texels);
       const SampleSet& samples = samples_of(*c, scheme, texels);
       texel_count += texels.count();
       state.ResumeTiming();
@@ -97,6 +96,7 @@ void light_on_surface(benchmark::State& state, const Scheme& scheme) {
 }
 
 const Settings kThesis{{"k", "11"}, {"exponent", "0.5"}, {"distance", "chebyshev"}};
+const Settings kUsual{{"k", "11"}, {"exponent", "2"}};
 
 const int kRegistered = [] {
   const std::vector<std::pair<std::string, Scheme>> schemes{
@@ -104,8 +104,12 @@ const int kRegistered = [] {
       {"texels_128", {"texels", 1, 128, "direct", {}}},
       {"texels_512", {"texels", 1, 512, "direct", {}}},
       {"thesis_random_64", {"random", 1, 64, "cell_grid", kThesis}},
-      {"shepard_1x64", {"low_discrepancy", 1, 64, "cell_grid", {}}},
-      {"shepard_8x64", {"low_discrepancy", 8, 64, "cell_grid", {}}},
+      {"shepard_1x64", {"low_discrepancy", 1, 64, "cell_grid", kUsual}},
+      {"shepard_8x64", {"low_discrepancy", 8, 64, "cell_grid", kUsual}},
+      {"shepard_8x4", {"low_discrepancy", 8, 4, "cell_grid", kUsual}},
+      {"shepard_chosen_1x64", {"low_discrepancy", 1, 64, "cell_grid", {}}},
+      {"shepard_chosen_8x64", {"low_discrepancy", 8, 64, "cell_grid", {}}},
+      {"shepard_chosen_8x4", {"low_discrepancy", 8, 4, "cell_grid", {}}},
       {"fit_plain_8x64", {"stratified", 8, 64, "fit", {{"slopes", "false"}, {"near_field", "false"}}}},
       {"fit_near_field_8x64", {"stratified", 8, 64, "fit", {{"slopes", "false"}}}},
       {"fit_slopes_8x64", {"stratified", 8, 64, "fit", {{"near_field", "false"}}}},
@@ -123,6 +127,11 @@ const int kRegistered = [] {
       {"fit_value_2x64_2_an_axis", {"stratified", 2, 64, "fit", {{"slopes", "false"}}, 2}},
       {"fit_value_8x8", {"stratified", 8, 8, "fit", {{"slopes", "false"}}}},
       {"fit_value_8x16", {"stratified", 8, 16, "fit", {{"slopes", "false"}}}},
+      {"fit_5x64_1.5_an_axis", {"stratified", 4.74, 64, "fit", {}, 1.5}},
+      {"fit_8x64_1.5_an_axis", {"stratified", 8, 64, "fit", {}, 1.5}},
+      {"fit_5x64_1.58_an_axis", {"stratified", 4, 64, "fit", {}, 1.58}},
+      {"fit_value_4x64_2_an_axis", {"stratified", 4, 64, "fit", {{"slopes", "false"}}, 2}},
+      {"fit_16x64", {"stratified", 16, 64, "fit", {}}},
       {"fit_4x32_2_an_axis", {"stratified", 4, 32, "fit", {}, 2}},
   };
   for (const auto& [name, scheme] : schemes) {

@@ -93,6 +93,11 @@ inline Volume busiest_block(const Volume& volume, const std::vector<float>& isov
   return block;
 }
 
+/// So many texels a cell and axis.
+inline Lattice texels_of(const Volume& volume, double a_cell) {
+  return cell_lattice(volume.lattice(), Index3(glm::round(Vec3(volume.lattice().size - 1) * a_cell)));
+}
+
 /// Points of {f = isovalue} inside random crossed cells, found along the axis of the steepest change.
 inline std::vector<Vec3f> surface_points(const Volume& volume, float isovalue, std::size_t count, std::uint64_t seed) {
   const TrilinearField field(volume);

@@ -8,7 +8,9 @@ namespace {
 // docs/resampling.md has the curves behind these.
 constexpr double kFitSites = 8.0;   // a texel and cell
 constexpr double kFineSites = 2.0;  // a texel
-constexpr double kOneIsovalueTexels = 2.0;
+// One isovalue: the most texels that bricks of one number a voxel of the whole volume have room for.
+constexpr double kOneIsovalueTexels = 1.7;
+constexpr double kOneIsovalueSites = 16.0;  // a crossed cell
 /// A cell that a level set only just cuts may get no site; its texels are next to lit ones.
 constexpr int kFilledLayers = 2;
 
@@ -34,7 +36,10 @@ void choose_resampling(BakeSettings& settings) {
   // Finer texels tell level sets apart themselves; all sites of one isovalue say nothing of how light changes with it.
   const bool fine = settings.texels_a_cell > 1.0;
   if (fine || one_isovalue(settings)) settings.resampler.settings.try_emplace("slopes", "false");
-  if (settings.sites_a_cell == 0.0) {
+  if (settings.sites_a_cell != 0.0) return;
+  if (fine && one_isovalue(settings)) {
+    settings.sites_a_cell = kOneIsovalueSites;
+  } else {
     settings.sites_a_cell = fine ? kFineSites * std::pow(settings.texels_a_cell, 3) : kFitSites;
   }
 }

@@ -71,7 +71,7 @@ struct BakeResult {
 
 /// `settings` with every backend named and what they want filled in (docs/resampling.md): sites at the texels and the
 /// direct resampler; for the least-squares fit stratified sites, or with known isovalues sites on their level sets, and
-/// for one isovalue two texels an axis; where a number of samples or another sampler is asked for, low-discrepancy
+/// for one isovalue 1.7 texels an axis; where a number of samples or another sampler is asked for, low-discrepancy
 /// sites and Shepard's interpolation over a cell grid; the default tracer.
 [[nodiscard]] BakeSettings with_defaults(BakeSettings settings, const Stages& stages);
 
