@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 #include <isolux/core/error.h>
+#include <isolux/mc_extract/extractor.h>
 
 #include <glm/geometric.hpp>
 #include <limits>
@@ -140,21 +141,6 @@ Triangle face_corners(const IsoMesh& mesh, std::size_t face) {
 
 }  // namespace
 
-IndexedMesh indexed_mesh(const IsoMesh& mesh) {
-  IndexedMesh result;
-  result.positions.reserve(mesh.n_vertices());
-  result.normals.reserve(mesh.n_vertices());
-  result.triangles.reserve(mesh.n_faces());
-  for (const auto v : mesh.vertices()) {
-    const auto& p = mesh.point(v);
-    const auto& n = mesh.normal(v);
-    result.positions.emplace_back(p[0], p[1], p[2]);
-    result.normals.emplace_back(n[0], n[1], n[2]);
-  }
-  for (std::size_t f = 0; f < mesh.n_faces(); ++f) result.triangles.push_back(face_corners(mesh, f));
-  return result;
-}
-
 void set_face_normals(IndexedMesh& mesh) {
   sum_face_normals(
       mesh.positions.size(), mesh.triangles.size(), [&](std::size_t f) { return mesh.triangles[f]; },
@@ -174,3 +160,22 @@ void set_face_normals(IsoMesh& mesh) {
 }
 
 }  // namespace isolux::mc
+
+namespace isolux {
+
+IndexedMesh indexed_mesh(const IsoMesh& mesh) {
+  IndexedMesh result;
+  result.positions.reserve(mesh.n_vertices());
+  result.normals.reserve(mesh.n_vertices());
+  result.triangles.reserve(mesh.n_faces());
+  for (const auto v : mesh.vertices()) {
+    const auto& p = mesh.point(v);
+    const auto& n = mesh.normal(v);
+    result.positions.emplace_back(p[0], p[1], p[2]);
+    result.normals.emplace_back(n[0], n[1], n[2]);
+  }
+  for (std::size_t f = 0; f < mesh.n_faces(); ++f) result.triangles.push_back(mc::face_corners(mesh, f));
+  return result;
+}
+
+}  // namespace isolux

@@ -10,9 +10,6 @@ namespace isolux::mc {
 /// than two faces or two faces disagree on its direction, or if there are too many half-edges for OpenMesh.
 [[nodiscard]] IsoMesh build_mesh(const IndexedMesh& indexed);
 
-/// The other way round. Vertices and faces keep their order.
-[[nodiscard]] IndexedMesh indexed_mesh(const IsoMesh& mesh);
-
 /// Replaces the normals by the area-weighted means of the adjacent faces' (their cross products are summed). A vertex
 /// whose faces cancel keeps the one it had.
 void set_face_normals(IndexedMesh& mesh);

@@ -205,7 +205,7 @@ TEST(IsoExtractor, BothMeshesAreOne) {
     IsoMesh mesh;
     IsoExtractor(volume).extract(settings, {}, mesh);
     const IndexedMesh expected = indexed(volume, settings);
-    const IndexedMesh actual = mc::indexed_mesh(mesh);
+    const IndexedMesh actual = indexed_mesh(mesh);
     EXPECT_EQ(actual.positions, expected.positions);
     EXPECT_EQ(actual.normals, expected.normals);
     EXPECT_EQ(actual.triangles, expected.triangles);

@@ -7,31 +7,6 @@
 #include <utility>
 
 namespace isolux::viewer {
-namespace {
-
-void assign(IndexedMesh& result, const IsoMesh& mesh) {
-  result.positions.clear();
-  result.normals.clear();
-  result.triangles.clear();
-  result.positions.reserve(mesh.n_vertices());
-  result.normals.reserve(mesh.n_vertices());
-  result.triangles.reserve(mesh.n_faces());
-  for (const auto v : mesh.vertices()) {
-    const auto& p = mesh.point(v);
-    const auto& n = mesh.normal(v);
-    result.positions.emplace_back(p[0], p[1], p[2]);
-    result.normals.emplace_back(n[0], n[1], n[2]);
-  }
-  for (const auto f : mesh.faces()) {
-    Triangle triangle{};
-    std::size_t corner = 0;
-    for (const auto v : mesh.fv_range(f)) triangle[corner++] = std::uint32_t(v.idx());
-    result.triangles.push_back(triangle);
-  }
-}
-
-}  // namespace
-
 SurfaceMaker::SurfaceMaker(std::shared_ptr<const Volume> volume, const Registry<Extractor>& extractors,
                            const BackendChoice& choice)
     : volume_(std::move(volume)), extractor_(extractors.create(choice.name, choice.settings)) {
@@ -60,7 +35,7 @@ Surface SurfaceMaker::make(const ExtractSettings& settings, IndexedMesh memory, 
 
 void SurfaceMaker::extract(const ExtractSettings& settings, const Run& run, IndexedMesh& mesh) {
   if (extractor_) {
-    assign(mesh, extractor_->extract(*volume_, settings, run));
+    mesh = indexed_mesh(extractor_->extract(*volume_, settings, run));
     return;
   }
   if (!fast_) fast_.emplace(*volume_, run);

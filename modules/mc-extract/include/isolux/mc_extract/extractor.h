@@ -4,6 +4,7 @@
 #include <isolux/core/registry.h>
 #include <isolux/core/run.h>
 #include <isolux/core/volume.h>
+#include <isolux/mc_extract/indexed_mesh.h>
 #include <isolux/mc_extract/iso_mesh.h>
 
 #include <cstddef>
@@ -47,6 +48,9 @@ class Extractor {
   [[nodiscard]] virtual IsoMesh extract(const Volume& volume, const ExtractSettings& settings,
                                         const Run& run) const = 0;
 };
+
+/// The arrays of a half-edge mesh; vertices and faces keep their order.
+[[nodiscard]] IndexedMesh indexed_mesh(const IsoMesh& mesh);
 
 /// marching_cubes, marching_tetrahedra, ...
 [[nodiscard]] Registry<Extractor> extractors();
