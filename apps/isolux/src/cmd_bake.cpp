@@ -26,6 +26,7 @@ struct Options {
   std::string texels;
   std::string lattice = "cells";
   std::string bounce_method;
+  std::string sites = "all";
   double rmse = 0.0;
   double time = 0.0;
   std::string error_grid;
@@ -51,6 +52,7 @@ BakeSettings bake_settings(const Options& options, const Stages& stages) {
   if (!options.texels.empty() && options.texels != kChosen) settings.texels = parse_size3("--texels", options.texels);
   settings.texels_a_cell = options.texels_a_cell;
   if (!options.iso_range.empty()) settings.isovalues = parse_range("--iso-range", options.iso_range);
+  settings.texel_sites = options.sites == "need" ? TexelSites::kNeeded : TexelSites::kAll;
   settings.target_rmse = options.rmse;
   settings.target_seconds = options.time;
   settings.wants_error_grid = !options.error_grid.empty();
@@ -158,6 +160,11 @@ void add_bake_command(CLI::App& program, Session& session) {
                   "error wanted: spends rays where they take away most error until it is reached")
       ->check(CLI::PositiveNumber)
       ->type_name("TARGET");
+  command
+      .add_option("--sites", options->sites,
+                  "texels to trace: all (default), or need: with --rmse and --bounces 0, few of them, the others being "
+                  "predicted")
+      ->check(CLI::IsMember({"all", "need"}));
   command.add_option("--time", options->time, "seconds to spend on rays and bounces; with --rmse: at most")
       ->check(CLI::PositiveNumber)
       ->type_name("SECONDS");

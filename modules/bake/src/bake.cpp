@@ -12,6 +12,7 @@
 #include <variant>
 
 #include "bake_parts.h"
+#include "light_by_need.h"
 #include "resampling_choice.h"
 
 namespace isolux {
@@ -90,6 +91,7 @@ BakeSettings with_defaults(BakeSettings settings, const Stages& stages) {
 BakeResult bake(const Volume& volume, const Scene& scene, const BakeSettings& given, const Stages& stages,
                 const Run& run) {
   const BakeSettings settings = with_defaults(given, stages);
+  if (settings.texel_sites == TexelSites::kNeeded) return bake_by_need(volume, scene, settings, stages, run);
   if (keeps_rays(settings, scene)) return KeptRays(volume, scene, settings, stages, run).light(scene, run);
   if (!has_target(settings)) return bake_paths(volume, scene, settings, stages, run);
   double pilot_seconds = 0.0;

@@ -37,6 +37,7 @@ std::string settings_to_json(const BakeSettings& settings, const Run& run) {
                       {"resampler", choice_to_json(settings.resampler)},
                       {"lattice", settings.lattice == TexelLattice::kCells ? "cells" : "voxels"},
                       {"seed", run.seed}};
+  if (settings.texel_sites == TexelSites::kNeeded) json["sites"] = "need";
   if (settings.target_rmse > 0.0) json["rmse"] = settings.target_rmse;
   if (settings.target_seconds > 0.0) json["time"] = settings.target_seconds;
   if (!json.contains("rmse") && !json.contains("time")) json["rays"] = settings.trace.rays;

@@ -30,12 +30,20 @@ enum class BounceMethod {
   kPaths      ///< the tracer follows every path to its end: unbiased
 };
 
+/// Which texels are traced where sites sit at the texels.
+enum class TexelSites {
+  kAll,    ///< every one
+  kNeeded  ///< few, the others being predicted from them, until target_rmse is reached (docs/need.md); not with a time,
+           ///< bounces, light sources, an image as environment, other tracers than wide, other resamplers than direct
+};
+
 struct BakeSettings {
   BackendChoice sampler;
   BackendChoice tracer;
   BackendChoice resampler;
   TraceSettings trace;
   BounceMethod bounce_method = BounceMethod::kDefault;
+  TexelSites texel_sites = TexelSites::kAll;
   TexelLattice lattice = TexelLattice::kCells;
   std::optional<Index3> texels;  ///< of kCells only; default texels_a_cell
   double texels_a_cell = 0.0;    ///< on each axis, of kCells; 0: what suits the resampler
@@ -58,13 +66,14 @@ struct BakeResult {
   std::size_t sites = 0;
   int sweeps = 0;                ///< of BounceMethod::kIterated
   std::size_t unlit_texels = 0;  ///< filled from their lit neighbours
-  /// Root mean squared standard error of e over the sites; NaN if one ray a site says nothing of it.
+  /// Root mean squared standard error of e over the sites, or error at texels held out (TexelSites::kNeeded); NaN if
+  /// one ray a site says nothing of it.
   double rmse_estimate = 0.0;
   std::uint32_t least_rays = 0;  ///< a site
   std::uint32_t most_rays = 0;
   std::size_t link_bytes = 0;  ///< memory of kept rays
   /// What was known without tracing, by reason, of sites at texels: sites_flat (no gradient, hence no normal),
-  /// sites_outside_iso_range.
+  /// sites_outside_iso_range, texels_predicted.
   std::map<std::string, std::uint64_t> skipped;
   std::map<std::string, double> seconds;  ///< by stage: sites, trace, bounces (of kIterated), resample
 };

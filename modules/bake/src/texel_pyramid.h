@@ -1,0 +1,101 @@
+#pragma once
+
+#include <isolux/core/lattice.h>
+#include <isolux/core/run.h>
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <vector>
+
+namespace isolux {
+
+/// What is known of the light in a cell between traced texels, from their differences from their surroundings.
+struct CellFigures {
+  double roughness = 0.0;  ///< mean squared difference of light, without noise, from its mean over a neighbourhood
+  double noise = 0.0;      ///< variance of that difference by the rays' noise
+  double rays = 0.0;       ///< a texel
+
+  /// How much of the difference is light: Wiener's filter.
+  [[nodiscard]] double kept() const { return roughness > 0.0 ? roughness / (roughness + noise) : 0.0; }
+};
+
+/// Light that is traced at some texels and predicted between them. The texels are cut into cells of 4^3 texels, whose
+/// corners are traced; a refined cell falls apart into eight, down to single texels. A traced value is the mean over
+/// its surroundings, which takes noise out, and as much of its difference from that mean as is not noise; pairs of
+/// opposite neighbours keep linear light as it is. Between the corners of a cell light is interpolated trilinearly.
+class TexelPyramid {
+ public:
+  static constexpr int kLevels = 3;
+  static constexpr int stride(int level) { return 4 >> level; }
+
+  /// Light at one texel.
+  struct Traced {
+    std::vector<float> light;  ///< `channels` a texel
+    std::vector<float> variance;
+    std::vector<std::uint32_t> rays;
+  };
+  struct Cell {
+    int level = 0;
+    Index3 at{0};
+  };
+
+  /// Texels of `has_site` 0 have no light; cells with such corners are refined at once.
+  TexelPyramid(const Lattice& texels, int channels, std::vector<std::uint8_t> has_site);
+
+  /// The traced light, written by the caller for the texels of wanted().
+  Traced& traced() { return traced_; }
+
+  /// Texels that have come to be wanted since the last call, rising.
+  [[nodiscard]] std::vector<std::size_t> wanted();
+  void refine(const Cell& cell);
+
+  /// Figures anew, after light was traced.
+  void update(const Run& run);
+  /// The cells that are not refined, in a fixed order.
+  void for_each_cell(const std::function<void(const Cell&, const CellFigures&)>& visit) const;
+  /// At every texel `figure` of the cell that it lies in, of the one above it if on a face.
+  [[nodiscard]] std::vector<float> of_cells(const std::function<float(const Cell&, const CellFigures&)>& figure) const;
+  /// The corner texels of a cell.
+  [[nodiscard]] std::array<std::size_t, 8> corners(const Cell& cell) const;
+  [[nodiscard]] std::size_t texels_of(const Cell& cell) const;
+
+  /// Light of all texels that have a site, `channels` each.
+  [[nodiscard]] std::vector<float> light(const Run& run) const;
+
+ private:
+  struct Level {
+    Index3 size{0};                    ///< cells
+    std::vector<std::uint8_t> leaf;    ///< one a cell
+    std::vector<CellFigures> raw;      ///< of a cell's own corners
+    std::vector<CellFigures> figures;  ///< with its neighbours
+    [[nodiscard]] std::size_t offset(const Index3& i) const {
+      return (std::size_t(i.z) * std::size_t(size.y) + std::size_t(i.y)) * std::size_t(size.x) + std::size_t(i.x);
+    }
+  };
+
+  [[nodiscard]] bool has_all_corners(const Cell& cell) const;
+  void make_leaf(const Cell& cell);
+  [[nodiscard]] Index3 first_texel(const Cell& cell) const;
+  [[nodiscard]] Index3 last_texel(const Cell& cell) const;
+  template <class Visit>
+  void for_each_texel(const Cell& cell, const Visit& visit) const;
+  void differ(std::size_t texel);
+  void sum_corners(int level, std::size_t cell);
+  void sum_neighbours(int level, std::size_t cell);
+  [[nodiscard]] CellFigures figures_at(std::size_t texel) const;
+  void predict(const Cell& cell, const std::vector<float>& smooth, std::vector<float>& light) const;
+
+  Lattice texels_;
+  std::size_t channels_;
+  std::vector<std::uint8_t> has_site_;
+  std::vector<std::int8_t> level_;  ///< finest of the cells around a texel; -1: not traced
+  std::vector<std::size_t> wanted_;
+  std::array<Level, kLevels> levels_;
+  Traced traced_;
+  std::vector<float> difference_;  ///< from the surroundings
+  std::vector<float> noise_;       ///< its variance
+};
+
+}  // namespace isolux
