@@ -84,7 +84,8 @@ HWY_INLINE Floats slope_at_root(const Deflated& p, Floats root) {
 HWY_INLINE Mask is_doubtful(const Deflated& p, Floats t, Floats rounding) {
   const Floats discriminant = hn::NegMulAdd(hn::Mul(hn::Set(kF, 4.0f), p.c[0]), p.c[2], hn::Mul(p.c[1], p.c[1]));
   const Floats end = hn::Mul(t, hn::MulAdd(t, hn::MulAdd(t, p.c[2], p.c[1]), p.c[0]));
-  const Mask touches = hn::Le(hn::Abs(discriminant), hn::Mul(hn::Abs(p.c[2]), rounding));
+  // Strictly: in a cell that is linear along the ray both sides are zero, and nothing is touched.
+  const Mask touches = hn::Lt(hn::Abs(discriminant), hn::Mul(hn::Abs(p.c[2]), rounding));
   const Mask at_edge = hn::Or(hn::Le(hn::Abs(p.c[0]), rounding), hn::Le(hn::Abs(end), rounding));
   return hn::AndNot(stays_on_it(p, t, hn::Zero(kF)), hn::Or(touches, at_edge));
 }
