@@ -93,6 +93,7 @@ void gather_rays(benchmark::State& state, const Case& test, RayQuestion question
   const auto rays = double(counters.rays);
   state.counters["rays/s"] = benchmark::Counter(rays, benchmark::Counter::kIsIterationInvariantRate);
   state.counters["hits"] = double(counters.hits) / rays;
+  state.counters["proven"] = double(counters.proven) / rays;
   state.counters["leaps"] = double(counters.macrocells) / rays;
   state.counters["cells"] = double(counters.cells) / rays;
 }

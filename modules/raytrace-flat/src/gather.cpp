@@ -34,7 +34,7 @@ TraceCounters gather(const Volume& volume, const Sites& sites, const GatherSetti
     for (const std::uint32_t site : block.sites)
       aimer.append(sites, site, settings.keys.empty() ? site : settings.keys[site], batch.rays, batch.world);
     TraceCounters counters;
-    wide::trace(block.field, block.occupancy, question, batch.rays, counters);
+    wide::trace(block.field, block.occupancy, block.inner, question, batch.rays, counters);
     GatheredRays gathered;
     gathered.sites = block.sites;
     gathered.rays = aimer.rays();

@@ -10,6 +10,7 @@ inline void add(TraceCounters& sum, const TraceCounters& part) {
   sum.macrocells += part.macrocells;
   sum.cells += part.cells;
   sum.cubics += part.cubics;
+  sum.proven += part.proven;
 }
 
 inline TraceCounters operator-(TraceCounters all, const TraceCounters& part) {
@@ -18,6 +19,7 @@ inline TraceCounters operator-(TraceCounters all, const TraceCounters& part) {
   all.macrocells -= part.macrocells;
   all.cells -= part.cells;
   all.cubics -= part.cubics;
+  all.proven -= part.proven;
   return all;
 }
 

@@ -55,6 +55,8 @@ struct Comparison {
   std::size_t rays = 0;
   std::size_t hits = 0;
   std::size_t wrong = 0;      ///< hit here, miss there
+  std::size_t any_wrong = 0;  ///< the same where any hit was asked for
+  std::size_t proven = 0;     ///< of those, told without a search
   std::size_t elsewhere = 0;  ///< hits more than 1e-4 voxel apart
   double worst = 0.0;         ///< voxels
 };
@@ -63,6 +65,7 @@ Comparison compare(const Volume& volume, const Sites& sites, int rays) {
   const LevelSetIntersector oracle(volume);
   Comparison sum;
   std::mutex adding;
+  std::vector<std::uint8_t> is_hit(sites.size() * std::size_t(rays));
   (void)gather(volume, sites, {.rays = rays}, isolux::Run{}, [&](const GatheredRays& gathered) {
     Comparison part;
     for (std::size_t i = 0; i < gathered.index_distance.size(); ++i) {
@@ -71,6 +74,7 @@ Comparison compare(const Volume& volume, const Sites& sites, int rays) {
                            gathered.index_direction[2][i]);
       const auto expected =
           oracle.next_hit(Vec3(sites.positions[site]), direction, sites.isovalues[site], OuterSide::kLower);
+      is_hit[site * gathered.rays + i % gathered.rays] = std::uint8_t(expected.has_value());
       ++part.rays;
       part.wrong += std::size_t(expected.has_value() == gathered.escaped(i));
       if (!expected || gathered.escaped(i)) continue;
@@ -86,6 +90,17 @@ Comparison compare(const Volume& volume, const Sites& sites, int rays) {
     sum.elsewhere += part.elsewhere;
     sum.worst = std::max(sum.worst, part.worst);
   });
+  const GatherSettings any_hit{.rays = rays, .question = RayQuestion::kAnyHit};
+  const TraceCounters counters = gather(volume, sites, any_hit, isolux::Run{}, [&](const GatheredRays& gathered) {
+    std::size_t wrong = 0;
+    for (std::size_t i = 0; i < gathered.index_distance.size(); ++i) {
+      const bool expected = is_hit[gathered.sites[i / gathered.rays] * gathered.rays + i % gathered.rays] != 0;
+      wrong += std::size_t(expected == gathered.escaped(i));
+    }
+    const std::scoped_lock lock(adding);
+    sum.any_wrong += wrong;
+  });
+  sum.proven = counters.proven;
   return sum;
 }
 
@@ -108,10 +123,12 @@ TEST_P(WideCampaign, AgreesWithTheOracleOnVolumes) {
     const Sites sites = sites_anywhere(*volume, std::size_t(stress() > 1 ? 160 * stress() : 40), OuterSide::kLower);
     const Comparison c = compare(*volume, sites, 64);
     EXPECT_EQ(c.wrong, 0u) << source.name << ", of " << c.rays << " rays";
+    EXPECT_EQ(c.any_wrong, 0u) << source.name << ", any hit, " << c.proven << " of them proven";
     EXPECT_EQ(c.elsewhere, 0u) << source.name << ", of " << c.hits << " hits";
     RecordProperty(source.name, std::to_string(c.rays));
-    report(fmt::format("{:<15} {} rays, {} hits, {} wrong, {} off by more than 1e-4 voxel, worst {:.1e}", source.name,
-                       c.rays, c.hits, c.wrong, c.elsewhere, c.worst));
+    report(fmt::format(
+        "{:<15} {} rays, {} hits, {} wrong, {} off by more than 1e-4 voxel, worst {:.1e}; any hit {} wrong, {} proven",
+        source.name, c.rays, c.hits, c.wrong, c.elsewhere, c.worst, c.any_wrong, c.proven));
   }
 }
 

@@ -68,8 +68,8 @@ void PathWaves::light(const SiteBlock& block, SampleSet& samples, TraceCounters&
     if (is_dark(wave)) break;
     if (wave.depth > 0) aim(wave);
     const bool none_goes_on = wave.depth == settings_.bounces || wave.depth == limits_.longest_path;
-    trace(block.field, block.occupancy, none_goes_on ? Question::kAnyHit : Question::kFirstHit, wave.batch.rays,
-          counters);
+    trace(block.field, block.occupancy, block.inner, none_goes_on ? Question::kAnyHit : Question::kFirstHit,
+          wave.batch.rays, counters);
     for (std::size_t i = 0; i < wave.batch.rays.count; ++i)
       counters.hits += std::uint64_t(wave.batch.rays.t[i] != kEscaped);
     arrive(block, wave);
@@ -211,7 +211,7 @@ void PathWaves::look(const SiteBlock& block, Wave& wave, std::vector<Sighting>& 
     put_ray(rays, path.position, path.isovalue, s.towards, aimer_.to_index());
     all_far = all_far && s.distance == kInfinity;
   }
-  trace(block.field, block.occupancy, all_far ? Question::kAnyHit : Question::kFirstHit, rays, counters);
+  trace(block.field, block.occupancy, block.inner, all_far ? Question::kAnyHit : Question::kFirstHit, rays, counters);
   for (std::size_t i = 0; i < rays.count; ++i) {
     const double met = double(rays.t[i]) * double(aimer_.to_index().world_step);
     const bool blocked = rays.t[i] != kEscaped && met <= sightings[i].distance;

@@ -65,9 +65,17 @@ struct OccupancyView {
   float threshold = -std::numeric_limits<float>::infinity();  ///< holds from this isovalue on towards the inner side
 };
 
+/// Where a ray has certainly met its level set: a bit for each cube of 2^3 cells, x fastest, set where all its corner
+/// values lie on the inner side of every isovalue up to the ceiling, by more than a rounding.
+struct InnerView {
+  const std::uint32_t* bits = nullptr;  ///< none: nothing is known
+  Index3 cubes{0};                      ///< on x a multiple of 32; cubes that stick out of the volume are left out
+  float ceiling = 0.0f;                 ///< holds up to this isovalue (with the outer side of higher values: negated)
+};
+
 /// Answers every ray of the batch. The occupancy must have every cell's bit set that a level set of one of the rays
 /// passes. Each answer depends on its own ray alone. Cost: some 20 leaps and 4 cell tests a ray.
-void trace(const FieldView& field, const OccupancyView& occupancy, Question question, Rays& rays,
-           TraceCounters& counters);
+void trace(const FieldView& field, const OccupancyView& occupancy, const InnerView& inner, Question question,
+           Rays& rays, TraceCounters& counters);
 
 }  // namespace isolux::wide

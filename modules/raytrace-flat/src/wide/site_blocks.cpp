@@ -8,6 +8,7 @@
 #include <limits>
 #include <vector>
 
+#include "wide/inner.h"
 #include "wide/occupancy.h"
 
 namespace isolux::wide {
@@ -62,6 +63,30 @@ std::vector<float> choose_thresholds(const Sites& sites, OuterSide outer, std::s
   return thresholds;
 }
 
+/// The isovalues of the buckets, with the sign that makes the inner side the higher one.
+struct BucketLevels {
+  std::vector<float> least;       ///< of each bucket's sites
+  std::vector<float> thresholds;  ///< a little lower
+  std::vector<float> highest;     ///< a little higher than any of the bucket
+  std::vector<float> ceilings;    ///< higher than that by more than a rounding
+
+  BucketLevels(const Volume& volume, const Sites& sites, const BlockRequest& request)
+      : least(choose_thresholds(sites, request.outer, bucket_count(volume, sites.size(), request))) {
+    // Positions found by tracing are off their level set by a rounding, which must not cost them their bucket; and
+    // whether a value is beyond an isovalue is to be no matter of rounding.
+    const ValueRange range = value_range(volume);
+    const float margin = 1e-4f * (range.high - range.low);
+    const float rounding = 0x1p-20f * std::max(std::abs(range.low), std::abs(range.high));
+    for (const float value : least) thresholds.push_back(value - margin);
+    float most = least.front();
+    for (const float isovalue : sites.isovalues) most = std::max(most, signed_isovalue(isovalue, request.outer));
+    for (std::size_t b = 0; b < least.size(); ++b) {
+      highest.push_back((b + 1 < least.size() ? least[b + 1] : most) + margin);
+      ceilings.push_back(highest.back() + margin + rounding);
+    }
+  }
+};
+
 struct Entry {
   std::uint64_t key;  ///< bucket, then Morton order
   std::uint32_t site;
@@ -114,29 +139,29 @@ void for_each_block(const Volume& volume, const Sites& sites, const BlockRequest
     throw InvalidInput(volume.name + ": the wide tracer takes volumes of at most 2^31 - 1 voxels");
   if (sites.size() == 0) return;
   const FieldView field{volume.values.values().data(), lattice.size, request.outer};
-  std::vector<float> thresholds = choose_thresholds(sites, request.outer, bucket_count(volume, sites.size(), request));
-  const std::vector<float> buckets = thresholds;
-  // Positions found by tracing are off their level set by a rounding; a little room below keeps them in the bucket.
-  const ValueRange range = value_range(volume);
-  for (float& threshold : thresholds) threshold -= 1e-4f * (range.high - range.low);
-  const CellCodes codes(field, thresholds, run);
+  const BucketLevels levels(volume, sites, request);
+  const CellCodes codes(field, levels.thresholds, run);
+  const InnerCodes inner_codes(field, levels.ceilings, run);
   Occupancy occupancy(codes);
+  InnerCubes inner(inner_codes);
   std::size_t done = 0;
-  for (std::size_t first = 0; first < buckets.size(); first += kBucketsAGroup) {
-    const std::size_t last = std::min(buckets.size(), first + kBucketsAGroup);
-    const std::vector<Entry> entries = collect(sites, request.outer, buckets, first, last, run);
+  for (std::size_t first = 0; first < levels.least.size(); first += kBucketsAGroup) {
+    const std::size_t last = std::min(levels.least.size(), first + kBucketsAGroup);
+    const std::vector<Entry> entries = collect(sites, request.outer, levels.least, first, last, run);
     for (std::size_t begin = 0; begin < entries.size();) {
       const std::uint64_t bucket = entries[begin].key >> 56;
       std::size_t end = begin;
       while (end < entries.size() && entries[end].key >> 56 == bucket) ++end;
       occupancy.build(codes, int(bucket), run);
+      inner.build(inner_codes, int(bucket), run);
       const Run part = part_of(run, done, end - begin, sites.size());
       parallel_blocks(end - begin, request.sites_per_block, part, stage, [&](const Block& block) {
         std::vector<std::uint32_t> numbers;
         for (std::size_t i = block.begin; i < block.end; ++i) numbers.push_back(entries[begin + i].site);
-        OccupancyView view = occupancy.view();
-        view.threshold = signed_isovalue(thresholds[bucket], request.outer);
-        body({numbers, field, view});
+        SiteBlock sites_of_block{numbers, field, occupancy.view(), inner.view()};
+        sites_of_block.occupancy.threshold = signed_isovalue(levels.thresholds[bucket], request.outer);
+        sites_of_block.inner.ceiling = levels.highest[bucket];
+        body(sites_of_block);
       });
       done += end - begin;
       begin = end;

@@ -7,6 +7,7 @@
 #endif
 
 #include "wide/deflated-inl.h"
+#include "wide/prove-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace isolux::wide {
@@ -51,8 +52,8 @@ HWY_INLINE Mask starts_in_box(const Ints (&cell)[3], const Ints (&mirror)[3], co
 
 /// First stage: solves each ray's own cell and queues the rays that leave it. \pre the queue has room for the vectors
 template <Question question>
-void start(const CellReader& cells, float threshold, Rays& rays, std::size_t begin, std::size_t end,
-           RayQueue& travelling) {
+void start(const CellReader& cells, float threshold, Prover& prover, Rays& rays, std::size_t begin, std::size_t end,
+           RayQueue& travelling, TraceCounters& counters) {
   const Floats zero = hn::Zero(kF);
   const Ints one = hn::Set(kI, 1);
   for (std::size_t at = begin; at < end; at += hn::Lanes(kF)) {
@@ -90,14 +91,20 @@ void start(const CellReader& cells, float threshold, Rays& rays, std::size_t beg
       const Mask is_sharp = hn::Le(noise, hn::Mul(hn::Set(kF, kAccuracy), slope_at_root(polynomial, root)));
       doubtful = hn::Or(doubtful, hn::AndNot(is_sharp, hit));
     }
+    Mask proven = hn::FirstN(kF, 0);
+    if (question == Question::kAnyHit) {
+      proven = prover.prove(r, hn::AndNot(hn::Or(blocked, hit), inside));
+      counters.proven += hn::CountTrue(kF, proven);
+      doubtful = hn::AndNot(proven, doubtful);
+    }
     if (!hn::AllFalse(kF, doubtful)) doubt(doubtful, r.id, rays);
     Floats t = hn::IfThenElse(hit, root, hn::Set(kF, kEscaped));
     if (question == Question::kAnyHit) t = hn::IfThenElse(hit, zero, t);
-    hn::StoreU(hn::IfThenElse(blocked, zero, t), kF, rays.t.data() + at);
+    hn::StoreU(hn::IfThenElse(hn::Or(blocked, proven), zero, t), kF, rays.t.data() + at);
     for (int a = 0; a < 3; ++a) r.cell[a] = exit.cell[a];
     r.t = exit.t;
     mark(r, stays_on_it(polynomial, exit.t, noise));
-    const Mask answered = hn::Or(doubtful, hn::Or(blocked, hit));
+    const Mask answered = hn::Or(hn::Or(doubtful, proven), hn::Or(blocked, hit));
     append_lanes(travelling, r, hn::And(hn::AndNot(answered, inside), goes_on));
   }
 }

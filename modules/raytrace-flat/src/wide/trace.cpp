@@ -18,18 +18,22 @@ namespace HWY_NAMESPACE {
 
 /// Keeps the queue of travelling rays filled and lets the stages take turns until every ray has its answer.
 template <Question question>
-void run_stages(const FieldView& field, const OccupancyView& occupancy, Rays& rays, TraceCounters& counters) {
+void run_stages(const FieldView& field, const OccupancyView& occupancy, const InnerView& inner, Rays& rays,
+                TraceCounters& counters) {
   static thread_local RayQueue travelling;
   static thread_local RayQueue waiting;
   static thread_local RootQueue roots;
   const CellReader cells(field);
+  Prover prover(field, inner);
   const Guide guide(occupancy, cells);
   const float threshold = field.outer == OuterSide::kLower ? occupancy.threshold : -occupancy.threshold;
   travelling.count = waiting.count = roots.count = 0;
   for (std::size_t next = 0; next < rays.count || travelling.count > 0;) {
     const std::size_t room = (RayQueue::kCapacity - travelling.count) / hn::Lanes(kF) * hn::Lanes(kF);
     const std::size_t end = HWY_MIN(rays.count, next + room);
-    start<question>(cells, threshold, rays, next, end, travelling);
+    start<question>(cells, threshold, prover, rays, next, end, travelling, counters);
+    // From the first rays of each batch alone, so that what is counted does not depend on threads.
+    if (next == 0) prover.learn();
     next = end;
     travel(guide, travelling, waiting, counters);
     counters.cells += waiting.count;
@@ -40,12 +44,12 @@ void run_stages(const FieldView& field, const OccupancyView& occupancy, Rays& ra
   counters.rays += rays.count;
 }
 
-void trace_rays(const FieldView& field, const OccupancyView& occupancy, Question question, Rays& rays,
-                TraceCounters& counters) {
+void trace_rays(const FieldView& field, const OccupancyView& occupancy, const InnerView& inner, Question question,
+                Rays& rays, TraceCounters& counters) {
   if (question == Question::kAnyHit) {
-    run_stages<Question::kAnyHit>(field, occupancy, rays, counters);
+    run_stages<Question::kAnyHit>(field, occupancy, inner, rays, counters);
   } else {
-    run_stages<Question::kFirstHit>(field, occupancy, rays, counters);
+    run_stages<Question::kFirstHit>(field, occupancy, inner, rays, counters);
   }
 }
 
@@ -82,11 +86,11 @@ void decide(const FieldView& field, Rays& rays, TraceCounters& counters) {
 
 }  // namespace
 
-void trace(const FieldView& field, const OccupancyView& occupancy, Question question, Rays& rays,
-           TraceCounters& counters) {
+void trace(const FieldView& field, const OccupancyView& occupancy, const InnerView& inner, Question question,
+           Rays& rays, TraceCounters& counters) {
   rays.doubtful.clear();
   rays.vague.clear();
-  HWY_DYNAMIC_DISPATCH(trace_rays)(field, occupancy, question, rays, counters);
+  HWY_DYNAMIC_DISPATCH(trace_rays)(field, occupancy, inner, question, rays, counters);
   decide(field, rays, counters);
 }
 

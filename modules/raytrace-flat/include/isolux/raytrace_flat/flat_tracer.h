@@ -25,6 +25,7 @@ struct TraceCounters {
   std::uint64_t macrocells = 0;  ///< entered
   std::uint64_t cells = 0;       ///< tested
   std::uint64_t cubics = 0;      ///< solved
+  std::uint64_t proven = 0;      ///< hits told without following the ray: it is seen on the inner side further on
 };
 
 struct TraceResult {
