@@ -77,6 +77,7 @@ void report_bake(const BakeResult& result, Session& session) {
   report["sites"] = result.sites;
   report["rays_a_site"] = {{"least", result.least_rays}, {"most", result.most_rays}};
   report["skipped"] = result.skipped;
+  report["skipped"]["searches_for_hits"] = result.counters.proven;
   report["link_bytes"] = result.link_bytes;
   report["texels"] = texels.count();
   report["texel_dims"] = {texels.size.x, texels.size.y, texels.size.z};

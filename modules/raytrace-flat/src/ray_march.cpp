@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "box_entry.h"
+
 namespace isolux {
 namespace {
 
@@ -266,29 +268,14 @@ std::optional<LevelSetHit> RayMarch::hit_in_cell(const Vec3& origin, const Vec3&
 std::optional<LevelSetHit> RayMarch::first_hit(const Vec3& origin, const Vec3& direction, double isovalue,
                                                TraceCounters& counters) const {
   ++counters.rays;
-  double enter = 0.0;
-  double leave = kInfinity;
-  int face = -1;
-  for (int a = 0; a < 3; ++a) {
-    const double high = lattice_.size[a] - 1;
-    if (direction[a] == 0.0) {
-      if (!(origin[a] >= 0.0 && origin[a] <= high)) return std::nullopt;
-      continue;
-    }
-    const double near = ((direction[a] > 0.0 ? 0.0 : high) - origin[a]) / direction[a];
-    const double far = ((direction[a] > 0.0 ? high : 0.0) - origin[a]) / direction[a];
-    if (near > enter) {
-      enter = near;
-      face = a;
-    }
-    leave = std::min(leave, far);
-  }
-  if (!(enter <= leave)) return std::nullopt;
-  Vec3 start = origin + enter * direction;
+  const auto entry = enter_box(origin, direction, lattice_.size);
+  if (!entry) return std::nullopt;
+  Vec3 start = origin + entry->t * direction;
+  const int face = entry->axis;
   if (face >= 0) start[face] = direction[face] > 0.0 ? 0.0 : double(lattice_.size[face] - 1);
   Ray ray;
   if (!make_ray(start, direction, kInfinity, ray)) return std::nullopt;
-  ray.offset = enter;
+  ray.offset = entry->t;
   ray.level = isovalue;
   CellCorners corners;
   load(ray, corners);
@@ -296,7 +283,7 @@ std::optional<LevelSetHit> RayMarch::first_hit(const Vec3& origin, const Vec3& d
   const double value = cell_value(corners, start_in_cell(ray));
   if (value == 0.0) {
     ++counters.hits;
-    return LevelSetHit{.t = enter, .position = {ray.origin[0], ray.origin[1], ray.origin[2]}};
+    return LevelSetHit{.t = entry->t, .position = {ray.origin[0], ray.origin[1], ray.origin[2]}};
   }
   ray.inner = value < 0.0 ? 1.0 : -1.0;
   return march(ray, RootWish::kPlace, counters);
