@@ -69,7 +69,8 @@ Table speed_table() {
   table.sentence =
       "Bricks of cells entered, cells tested and cubics solved a ray, as the tracers count them; a tracer that is "
       "asked for "
-      "any hit need not solve them, nor search for a hit that a look at the inner side proves. Setting up is left out of the rates: what a tracer makes of the volume, and "
+      "any hit need not solve them, nor search for a hit that a look at the inner side proves. Setting up is left out "
+      "of the rates: what a tracer makes of the volume, and "
       "Embree's "
       "tree; Embree in the fastest of its calls.";
   return table;
