@@ -108,12 +108,6 @@ class ByNeed {
   }
 
  private:
-  /// Some texels with their light traced once.
-  struct Batch {
-    std::unique_ptr<LightLinks> links;
-    std::vector<std::size_t> texels;
-  };
-
   [[nodiscard]] LinkSettings links(int rays) const {
     return {.rays = rays, .outer = scene_.outer, .ends = LinkEnds::kDropped, .texels = texels_};
   }
@@ -126,7 +120,7 @@ class ByNeed {
 
   void hold_out() {
     const std::size_t count = places_.texel.size();
-    const std::size_t wanted = std::max<std::size_t>(1, std::min(kHeldOut, count / kTexelsAHeldOut));
+    const std::size_t wanted = std::min(kHeldOut, (count + kTexelsAHeldOut - 1) / kTexelsAHeldOut);
     RandomStream random(run_.seed, 0, 0x4e656564);
     // One from each of as many equal shares of the texels.
     for (std::size_t i = 0; i < wanted; ++i) {
@@ -144,7 +138,7 @@ class ByNeed {
   }
 
   [[nodiscard]] double held_out_error() const {
-    const std::size_t channels = held_out_light_[0].size() / held_out_.size();
+    const std::size_t channels = is_grey(scene_) ? 1 : 3;
     double sum = 0.0;
     for (std::size_t i = 0; i < held_out_.size(); ++i) {
       for (std::size_t c = 0; c < channels; ++c) {
@@ -153,28 +147,29 @@ class ByNeed {
                (double(held_out_light_[1][i * channels + c]) - found);
       }
     }
-    return std::max(0.0, sum / double(held_out_light_[0].size()));
+    return std::max(0.0, sum / std::max(1.0, double(held_out_light_[0].size())));
   }
 
   void trace_wanted() {
-    Batch batch;
-    batch.texels = pyramid_.wanted();
-    if (batch.texels.empty()) return;
-    batch.links = std::make_unique<LightLinks>(volume_, sites_at(places_, batch.texels), links(kFirstRays),
-                                               seeded(16 + batches_.size()));
-    take_over(batch);
-    batches_.push_back(std::move(batch));
+    const std::vector<std::size_t> texels = pyramid_.wanted();
+    if (links_ == nullptr) {
+      links_ = std::make_unique<LightLinks>(volume_, sites_at(places_, texels), links(kFirstRays), run_);
+    } else {
+      links_->append(sites_at(places_, texels), run_);
+    }
+    traced_texels_.insert(traced_texels_.end(), texels.begin(), texels.end());
+    take_over();
   }
 
-  void take_over(const Batch& batch) {
-    const SampleSet samples = batch.links->direct(scene_, {}, run_).samples;
+  void take_over() {
+    const SampleSet samples = links_->direct(scene_, {}, run_).samples;
     const auto channels = std::size_t(samples.channels);
     TexelPyramid::Traced& traced = pyramid_.traced();
-    for (std::size_t i = 0; i < batch.texels.size(); ++i) {
-      const std::size_t texel = batch.texels[i];
+    for (std::size_t i = 0; i < traced_texels_.size(); ++i) {
+      const std::size_t texel = traced_texels_[i];
       std::copy_n(&samples.radiance[i * channels], channels, &traced.light[texel * channels]);
       traced.variance[texel] = samples.variance[i];
-      traced.rays[texel] = batch.links->rays()[i];
+      traced.rays[texel] = links_->rays()[i];
     }
   }
 
@@ -203,31 +198,23 @@ class ByNeed {
       }
       for (const std::size_t corner : pyramid_.corners(step.cell)) doubled[corner] = 1;
     }
-    for (const Batch& batch : batches_) extend(batch, doubled);
-    return taken > 0;
-  }
-
-  void extend(const Batch& batch, const std::vector<std::uint8_t>& doubled) {
     std::vector<std::uint32_t> sites;
-    for (std::size_t i = 0; i < batch.texels.size(); ++i)
-      if (doubled[batch.texels[i]] != 0) sites.push_back(std::uint32_t(i));
-    if (sites.empty()) return;
-    batch.links->extend(sites, run_);
-    take_over(batch);
+    for (std::size_t i = 0; i < traced_texels_.size(); ++i)
+      if (doubled[traced_texels_[i]] != 0) sites.push_back(std::uint32_t(i));
+    links_->extend(sites, run_);
+    return taken > 0;
   }
 
   void finish(BakeResult& result) {
     const Stopwatch watch;
-    result.least_rays = std::uint32_t(kMostRays);
-    std::size_t traced = 0;
-    for (const Batch& batch : batches_) {
-      const auto [least, most] = std::minmax_element(batch.links->rays().begin(), batch.links->rays().end());
-      result.least_rays = std::min(result.least_rays, *least);
-      result.most_rays = std::max(result.most_rays, *most);
-      result.link_bytes += batch.links->bytes();
-      add(result.counters, batch.links->counters());
-      traced += batch.texels.size();
+    const auto [least, most] = std::minmax_element(links_->rays().begin(), links_->rays().end());
+    if (least != links_->rays().end()) {
+      result.least_rays = *least;
+      result.most_rays = *most;
     }
+    result.link_bytes = links_->bytes();
+    add(result.counters, links_->counters());
+    const std::size_t traced = traced_texels_.size();
     add(result.counters, held_out_counters_);
     result.skipped["texels_predicted"] = result.sites - traced;
     result.sites = traced;
@@ -264,7 +251,8 @@ class ByNeed {
   Lattice texels_;
   Places places_;
   TexelPyramid pyramid_;
-  std::vector<Batch> batches_;
+  std::unique_ptr<LightLinks> links_;
+  std::vector<std::size_t> traced_texels_;  ///< the links' sites, in their order
   std::vector<std::size_t> held_out_;
   std::array<std::vector<float>, 2> held_out_light_;
   TraceCounters held_out_counters_;

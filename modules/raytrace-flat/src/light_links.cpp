@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <limits>
 #include <map>
+#include <numeric>
 #include <optional>
 #include <utility>
 
@@ -96,8 +97,10 @@ class LightLinks::Solver {
 
 LightLinks::LightLinks(const Volume& volume, Sites sites, const LinkSettings& settings, const Run& run)
     : LightLinks(volume, std::move(sites), settings, run, WithoutProbes{}) {
-  rounds_->targets = std::make_shared<const LinkTargets>(volume, sites_,
-                                                         settings.texels.value_or(cell_lattice(volume.lattice())), run);
+  if (settings.ends == LinkEnds::kKept) {
+    rounds_->targets = std::make_shared<const LinkTargets>(
+        volume, sites_, settings.texels.value_or(cell_lattice(volume.lattice())), run);
+  }
   trace(0, std::size_t(settings.rays), {}, run);
   probes_ = wide::choose_probes(sites_);
   Run other = run;
@@ -126,7 +129,7 @@ void LightLinks::trace(std::size_t first, std::size_t rays, std::span<const std:
   own.seed = seed_;
   const auto question = settings_.ends == LinkEnds::kKept ? RayQuestion::kFirstHit : RayQuestion::kAnyHit;
   const RoundRequest request{.first = first, .rays = rays, .outer = settings_.outer, .question = question};
-  rounds_->all.push_back(trace_round(volume_, sites_, numbers, *rounds_->targets, request, own, counters_));
+  rounds_->all.push_back(trace_round(volume_, sites_, numbers, rounds_->targets.get(), request, own, counters_));
 }
 
 void LightLinks::extend(std::span<const std::uint32_t> sites, const Run& run) {
@@ -144,6 +147,26 @@ void LightLinks::extend(std::span<const std::uint32_t> sites, const Run& run) {
   quiet.progress = {};
   const TraceCounters before = again_->counters_;
   again_->extend(doubled, quiet);
+  add(counters_, again_->counters_ - before);
+}
+
+void LightLinks::append(const Sites& more, const Run& run) {
+  if (settings_.ends == LinkEnds::kKept) throw InvalidInput("links whose ends are kept take no more sites");
+  if (more.size() == 0) return;
+  std::vector<std::uint32_t> numbers(more.size());
+  std::iota(numbers.begin(), numbers.end(), std::uint32_t(sites_.size()));
+  sites_.positions.insert(sites_.positions.end(), more.positions.begin(), more.positions.end());
+  sites_.isovalues.insert(sites_.isovalues.end(), more.isovalues.begin(), more.isovalues.end());
+  sites_.normals.insert(sites_.normals.end(), more.normals.begin(), more.normals.end());
+  rays_.resize(sites_.size(), std::uint32_t(settings_.rays));
+  trace(0, std::size_t(settings_.rays), numbers, run);
+  if (again_ == nullptr) return;
+  const std::vector<std::size_t> probes = wide::choose_probes(more);
+  for (const std::size_t probe : probes) probes_.push_back(numbers.front() + probe);
+  Run quiet = run;
+  quiet.progress = {};
+  const TraceCounters before = again_->counters_;
+  again_->append(wide::sites_of(more, probes), quiet);
   add(counters_, again_->counters_ - before);
 }
 

@@ -40,7 +40,7 @@ void add_block(const LinkBlock& block, std::span<const float> light, std::span<f
 /// The links of what a gather hands over.
 class BlockMaker {
  public:
-  BlockMaker(const Sites& sites, std::span<const std::uint32_t> numbers, const LinkTargets& targets,
+  BlockMaker(const Sites& sites, std::span<const std::uint32_t> numbers, const LinkTargets* targets,
              const RoundRequest& request, std::uint64_t seed)
       : sites_(sites), numbers_(numbers), targets_(targets), request_(request), seed_(seed) {}
 
@@ -76,14 +76,14 @@ class BlockMaker {
       if (request_.question == RayQuestion::kAnyHit) continue;
       const Vec3 direction(gathered.index_direction[0][i], gathered.index_direction[1][i],
                            gathered.index_direction[2][i]);
-      targets.push_back(targets_.target(origin + double(gathered.index_distance[i]) * direction, draws,
-                                        std::uint32_t(request_.first + k)));
+      targets.push_back(targets_->target(origin + double(gathered.index_distance[i]) * direction, draws,
+                                         std::uint32_t(request_.first + k)));
     }
   }
 
   const Sites& sites_;
   std::span<const std::uint32_t> numbers_;
-  const LinkTargets& targets_;
+  const LinkTargets* targets_;
   const RoundRequest& request_;
   std::uint64_t seed_;
 };
@@ -91,7 +91,7 @@ class BlockMaker {
 }  // namespace
 
 LinkRound trace_round(const Volume& volume, const Sites& sites, std::span<const std::uint32_t> numbers,
-                      const LinkTargets& targets, const RoundRequest& request, const Run& run,
+                      const LinkTargets* targets, const RoundRequest& request, const Run& run,
                       TraceCounters& counters) {
   LinkRound round{.first = request.first, .rays = request.rays, .blocks = {}};
   const GatherSettings settings{.rays = int(request.rays),

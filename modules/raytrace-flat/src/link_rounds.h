@@ -59,9 +59,10 @@ struct RoundRequest {
   RayQuestion question = RayQuestion::kFirstHit;  ///< kAnyHit: which rays hit is kept, not where
 };
 
-/// Traces rays of those of the sites that `numbers` lists (all if empty).
+/// Traces rays of those of the sites that `numbers` lists (all if empty). `targets` may be null where only hits are
+/// asked for.
 [[nodiscard]] LinkRound trace_round(const Volume& volume, const Sites& sites, std::span<const std::uint32_t> numbers,
-                                    const LinkTargets& targets, const RoundRequest& request, const Run& run,
+                                    const LinkTargets* targets, const RoundRequest& request, const Run& run,
                                     TraceCounters& counters);
 
 /// sums[site] += the sum of `light` over the site's targets, `channels` values each.

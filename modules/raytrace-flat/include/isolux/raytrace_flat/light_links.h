@@ -68,6 +68,10 @@ class LightLinks {
   /// progress; the seed stays. Not at the same time as any other call.
   void extend(std::span<const std::uint32_t> sites, const Run& run);
 
+  /// More sites, behind those that are there, with settings.rays each. Not at the same time as any other call. \throw
+  /// InvalidInput where ends are kept, as these know the sites at the texels
+  void append(const Sites& more, const Run& run);
+
   [[nodiscard]] const Sites& sites() const { return sites_; }
   /// Rays of each site.
   [[nodiscard]] std::span<const std::uint32_t> rays() const { return rays_; }
