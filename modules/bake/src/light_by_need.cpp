@@ -22,7 +22,7 @@ namespace isolux {
 namespace {
 
 constexpr int kFirstRays = 16;
-constexpr double kMostRays = 0x1p18;
+constexpr double kMostRaysATexel = 0x1p18;
 constexpr int kMostRounds = 16;
 /// Texels held out: enough for the error to some 5 %, if there are so many.
 constexpr std::size_t kHeldOut = 6144;
@@ -35,14 +35,6 @@ constexpr double kInterpolated = 0.33;
 constexpr double kHalved = 0.2;
 /// The mean over the surroundings has noise of its own.
 constexpr double kNoiseLeft = 0.07;
-
-void add(TraceCounters& sum, const TraceCounters& part) {
-  sum.rays += part.rays;
-  sum.hits += part.hits;
-  sum.macrocells += part.macrocells;
-  sum.cells += part.cells;
-  sum.cubics += part.cubics;
-}
 
 /// Mean squared error of a cell's texels, by the figures of the cell.
 double squared_error(const CellFigures& figures, int level) {
@@ -65,7 +57,7 @@ Step best_step(const TexelPyramid& pyramid, const TexelPyramid::Cell& cell, cons
   CellFigures more = figures;
   more.noise *= kDoubling;
   Step best{.cell = cell, .gain = texels * (before - squared_error(more, cell.level)), .rays = figures.rays};
-  if (figures.rays >= kMostRays) best.gain = 0.0;
+  if (figures.rays >= kMostRaysATexel) best.gain = 0.0;
   if (cell.level + 1 < TexelPyramid::kLevels) {
     CellFigures finer = figures;
     finer.roughness *= kHalved;

@@ -4,7 +4,6 @@
 
 #include <mutex>
 
-#include "trace_counters.h"
 #include "wide/aimer.h"
 #include "wide/rays.h"
 #include "wide/site_blocks.h"

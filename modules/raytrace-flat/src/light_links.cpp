@@ -13,7 +13,6 @@
 #include "anderson.h"
 #include "link_rounds.h"
 #include "ray_values.h"
-#include "trace_counters.h"
 #include "wide/aimer.h"
 #include "wide/net_mean.h"
 

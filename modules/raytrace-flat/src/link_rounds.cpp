@@ -1,11 +1,10 @@
 #include "link_rounds.h"
 
 #include <isolux/core/parallel.h>
+#include <isolux/raytrace_flat/trace_counters.h>
 
 #include <mutex>
 #include <utility>
-
-#include "trace_counters.h"
 
 namespace isolux {
 namespace {

@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "path_tracer.h"
-#include "trace_counters.h"
 #include "trace_request.h"
 
 namespace isolux {

@@ -4,7 +4,6 @@
 #include <utility>
 #include <vector>
 
-#include "trace_counters.h"
 #include "trace_request.h"
 #include "wide/net_mean.h"
 #include "wide/path_waves.h"

@@ -4,6 +4,7 @@
 #include <isolux/core/run.h>
 #include <isolux/core/sample_set.h>
 #include <isolux/raytrace_flat/scene.h>
+#include <isolux/raytrace_flat/trace_counters.h>
 
 #include <cstdint>
 
@@ -16,16 +17,6 @@ struct TraceSettings {
   int rays = 64;              ///< a site: directions over the hemisphere
   int bounces = kAllBounces;  ///< reflections; 0: a hit is black unless it emits
   GradientKind gradient = GradientKind::kCentralDifferences;
-};
-
-/// What the work was, for reports and benchmarks.
-struct TraceCounters {
-  std::uint64_t rays = 0;  ///< rays that were traced, shadow rays and bounces included
-  std::uint64_t hits = 0;
-  std::uint64_t macrocells = 0;  ///< entered
-  std::uint64_t cells = 0;       ///< tested
-  std::uint64_t cubics = 0;      ///< solved
-  std::uint64_t proven = 0;      ///< hits told without following the ray: it is seen on the inner side further on
 };
 
 struct TraceResult {

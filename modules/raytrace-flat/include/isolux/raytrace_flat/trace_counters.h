@@ -1,8 +1,18 @@
 #pragma once
 
-#include <isolux/raytrace_flat/flat_tracer.h>
+#include <cstdint>
 
 namespace isolux {
+
+/// What the work was, for reports and benchmarks.
+struct TraceCounters {
+  std::uint64_t rays = 0;  ///< rays that were traced, shadow rays and bounces included
+  std::uint64_t hits = 0;
+  std::uint64_t macrocells = 0;  ///< entered
+  std::uint64_t cells = 0;       ///< tested
+  std::uint64_t cubics = 0;      ///< solved
+  std::uint64_t proven = 0;      ///< hits told without following the ray: it is seen on the inner side further on
+};
 
 inline void add(TraceCounters& sum, const TraceCounters& part) {
   sum.rays += part.rays;
