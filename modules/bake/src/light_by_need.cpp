@@ -21,9 +21,9 @@
 namespace isolux {
 namespace {
 
-constexpr int kFirstRays = 16;
+constexpr int kFirstRaysByNeed = 16;
 constexpr double kMostRaysATexel = 0x1p18;
-constexpr int kMostRounds = 16;
+constexpr int kMostRoundsByNeed = 16;
 /// Texels held out: enough for the error to some 5 %, if there are so many.
 constexpr std::size_t kHeldOut = 6144;
 constexpr std::size_t kTexelsAHeldOut = 8;
@@ -64,7 +64,7 @@ Step best_step(const TexelPyramid& pyramid, const TexelPyramid::Cell& cell, cons
     const Step step{.cell = cell,
                     .refines = true,
                     .gain = texels * (before - squared_error(finer, cell.level + 1)),
-                    .rays = 7.0 * kFirstRays};
+                    .rays = 7.0 * kFirstRaysByNeed};
     if (step.gain * best.rays > best.gain * step.rays) best = step;
   }
   return best;
@@ -90,7 +90,7 @@ class ByNeed {
       pyramid_.update(run_);
       light_ = pyramid_.light(run_);
       squared_error_ = held_out_error();
-      if (squared_error_ <= settings_.target_rmse * settings_.target_rmse || round == kMostRounds) break;
+      if (squared_error_ <= settings_.target_rmse * settings_.target_rmse || round == kMostRoundsByNeed) break;
       if (!take_steps()) break;
       trace_wanted();
     }
@@ -145,7 +145,7 @@ class ByNeed {
   void trace_wanted() {
     const std::vector<std::size_t> texels = pyramid_.wanted();
     if (links_ == nullptr) {
-      links_ = std::make_unique<LightLinks>(volume_, sites_at(places_, texels), links(kFirstRays), run_);
+      links_ = std::make_unique<LightLinks>(volume_, sites_at(places_, texels), links(kFirstRaysByNeed), run_);
     } else {
       links_->append(sites_at(places_, texels), run_);
     }
