@@ -49,9 +49,11 @@ BakeSettings bake_settings(const Options& options, const Stages& stages) {
     settings.bounce_method = options.bounce_method == "paths" ? BounceMethod::kPaths : BounceMethod::kIterated;
   }
   settings.lattice = options.lattice == "voxels" ? TexelLattice::kVoxels : TexelLattice::kCells;
-  if (!options.texels.empty() && options.texels != kChosen) settings.texels = parse_size3("--texels", options.texels);
+  if (!options.texels.empty() && options.texels != kChosen)
+    settings.texels = parse_size3("--texels", options.texels, "auto or NXxNYxNZ");
   settings.texels_a_cell = options.texels_a_cell;
   if (!options.iso_range.empty()) settings.isovalues = parse_range("--iso-range", options.iso_range);
+  if (options.sites == "need" && options.rmse <= 0.0) throw UsageError("--sites need: allowed with --rmse alone");
   settings.texel_sites = options.sites == "need" ? TexelSites::kNeeded : TexelSites::kAll;
   settings.target_rmse = options.rmse;
   settings.target_seconds = options.time;

@@ -54,8 +54,8 @@ std::vector<int> sizes(const std::string& option, const std::string& text, std::
 
 }  // namespace
 
-Index3 parse_size3(const std::string& option, const std::string& text) {
-  const auto s = sizes(option, text, 3, "NXxNYxNZ");
+Index3 parse_size3(const std::string& option, const std::string& text, const char* pattern) {
+  const auto s = sizes(option, text, 3, pattern);
   return {s[0], s[1], s[2]};
 }
 

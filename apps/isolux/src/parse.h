@@ -10,8 +10,8 @@ namespace isolux {
 
 /// Readers of option values; each throws UsageError naming the option, the text and what is allowed.
 
-/// "64x64x32": whole numbers of at least 1.
-[[nodiscard]] Index3 parse_size3(const std::string& option, const std::string& text);
+/// "64x64x32": whole numbers of at least 1. `pattern` says what is allowed.
+[[nodiscard]] Index3 parse_size3(const std::string& option, const std::string& text, const char* pattern = "NXxNYxNZ");
 /// "800x600"
 [[nodiscard]] std::pair<int, int> parse_size2(const std::string& option, const std::string& text);
 /// "LO:HI", LO <= HI

@@ -254,9 +254,9 @@ class ByNeed {
 
 /// Empty if it can be.
 std::string why_not(const BakeSettings& settings, const Scene& scene) {
-  if (!(settings.target_rmse > 0.0)) return "no error is asked for";
-  if (settings.target_seconds > 0.0) return "a time is given";
-  if (settings.trace.bounces != 0) return "light is reflected";
+  if (!(settings.target_rmse > 0.0)) return "no error is asked for (target_rmse)";
+  if (settings.target_seconds > 0.0) return "a time is given; allowed is an error alone";
+  if (settings.trace.bounces != 0) return "light is reflected; allowed is bounces = 0";
   if (!scene.lights.empty()) return "the scene has light sources";
   if (std::holds_alternative<ImageEnvironment>(scene.environment)) return "the environment is an image";
   if (settings.tracer.name != "wide") return "the tracer is not wide";
