@@ -7,7 +7,7 @@
 #include <isolux/core/parallel.h>
 #include <isolux/core/random.h>
 #include <isolux/raytrace_flat/level_set_intersector.h>
-#include <trace_counters.h>
+#include <isolux/raytrace_flat/trace_counters.h>
 
 #include <memory>
 #include <optional>
