@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <bit>
 
+#include "wide/level_rank.h"
 #include "wide/occupancy.h"
 
 namespace isolux::wide {
@@ -33,6 +34,7 @@ InnerCodes::InnerCodes(const FieldView& field, std::span<const float> ceilings, 
     : cubes_((field.size - 1) / kCube) {
   const int used = cubes_.x;
   cubes_.x = (used + kCubesAWord - 1) / kCubesAWord * kCubesAWord;
+  const LevelRank rank(ceilings);
   const std::size_t layer = std::size_t(cubes_.x) * std::size_t(cubes_.y);
   codes_.resize(layer * std::size_t(cubes_.z), 0);
   parallel_blocks(std::size_t(cubes_.z), 1, run, "", [&](const Block& block) {
@@ -43,7 +45,7 @@ InnerCodes::InnerCodes(const FieldView& field, std::span<const float> ceilings, 
       for (int i = 0; i < used; ++i) {
         const auto first = smallest.begin() + kCube * i;
         const float least = *std::min_element(first, first + kCube + 1);
-        out[i] = std::uint8_t(std::lower_bound(ceilings.begin(), ceilings.end(), least) - ceilings.begin());
+        out[i] = std::uint8_t(rank.exceeded(least));
       }
     }
   });

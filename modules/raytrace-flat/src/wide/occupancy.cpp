@@ -6,6 +6,8 @@
 #include <array>
 #include <cstring>
 
+#include "wide/level_rank.h"
+
 namespace isolux::wide {
 namespace {
 
@@ -15,35 +17,19 @@ constexpr int kLeapOfCode[8] = {1, 2, 3, 4, 6, 8, 10, 12};
 
 Index3 brick_count(Index3 points) { return (points - 1 + (kBrick - 1)) / kBrick; }
 
-/// Largest values of a brick's cells, from its up to 5 x 5 x 5 grid points.
-struct BrickMaxima {
-  float value[kBrickCells];
-  Index3 cells{0};  ///< how many of the brick's cells there are on each axis
-
-  BrickMaxima(const FieldView& field, Index3 brick) {
-    const float sign = field.outer == OuterSide::kLower ? 1.0f : -1.0f;
-    const Index3 first = brick * kBrick;
-    for (int a = 0; a < 3; ++a) cells[a] = std::min(kBrick, field.size[a] - 1 - first[a]);
-    float point[5][5][5];
-    for (int k = 0; k <= cells.z; ++k) {
-      for (int j = 0; j <= cells.y; ++j) {
-        const std::size_t row = (std::size_t(first.z + k) * std::size_t(field.size.y) + std::size_t(first.y + j)) *
-                                    std::size_t(field.size.x) +
-                                std::size_t(first.x);
-        for (int i = 0; i <= cells.x; ++i) point[k][j][i] = sign * field.values[row + std::size_t(i)];
-        for (int i = 0; i < cells.x; ++i) point[k][j][i] = std::max(point[k][j][i], point[k][j][i + 1]);
-      }
-    }
-    for (int k = 0; k < cells.z; ++k) {
-      for (int j = 0; j < cells.y; ++j) {
-        for (int i = 0; i < cells.x; ++i) {
-          value[k * 16 + j * 4 + i] = std::max(std::max(point[k][j][i], point[k][j + 1][i]),
-                                               std::max(point[k + 1][j][i], point[k + 1][j + 1][i]));
-        }
-      }
-    }
+/// Largest values of the cells of row (j, k), signed so that the inner side is the higher one. `largest` has room for
+/// the row's grid points.
+void row_maxima(const FieldView& field, int j, int k, std::vector<float>& largest) {
+  const auto nx = std::size_t(field.size.x);
+  const auto ny = std::size_t(field.size.y);
+  const float sign = field.outer == OuterSide::kLower ? 1.0f : -1.0f;
+  const float* row = field.values + (std::size_t(k) * ny + std::size_t(j)) * nx;
+  const float* above = row + nx * ny;
+  for (std::size_t i = 0; i < nx; ++i) {
+    largest[i] = std::max(std::max(sign * row[i], sign * row[nx + i]), std::max(sign * above[i], sign * above[nx + i]));
   }
-};
+  for (std::size_t i = 0; i + 1 < nx; ++i) largest[i] = std::max(largest[i], largest[i + 1]);
+}
 
 /// Eight bits to eight bytes of 0 or 1, the lowest bit to the lowest address.
 std::array<std::uint64_t, 256> make_spread() {
@@ -101,21 +87,18 @@ class Obstacles {
 CellCodes::CellCodes(const FieldView& field, std::span<const float> thresholds, const Run& run)
     : bricks_(brick_count(field.size)),
       codes_(std::size_t(bricks_.x) * std::size_t(bricks_.y) * std::size_t(bricks_.z) * kBrickCells, 0) {
-  const auto layer = std::size_t(bricks_.x) * std::size_t(bricks_.y);
+  const LevelRank rank(thresholds);
+  const std::size_t row = std::size_t(bricks_.x) * kBrickCells;
   parallel_blocks(std::size_t(bricks_.z), 1, run, "", [&](const Block& block) {
-    std::uint8_t* out = codes_.data() + block.begin * layer * kBrickCells;
-    for (int j = 0; j < bricks_.y; ++j) {
-      for (int i = 0; i < bricks_.x; ++i, out += kBrickCells) {
-        const BrickMaxima maxima(field, {i, j, int(block.begin)});
-        for (int z = 0; z < maxima.cells.z; ++z) {
-          for (int y = 0; y < maxima.cells.y; ++y) {
-            for (int x = 0; x < maxima.cells.x; ++x) {
-              const int cell = z * 16 + y * 4 + x;
-              const auto reached = std::upper_bound(thresholds.begin(), thresholds.end(), maxima.value[cell]);
-              out[cell] = std::uint8_t(reached - thresholds.begin());
-            }
-          }
-        }
+    std::vector<float> largest(std::size_t(field.size.x));
+    const int first = int(block.begin) * kBrick;
+    for (int k = first; k < std::min(first + kBrick, field.size.z - 1); ++k) {
+      for (int j = 0; j + 1 < field.size.y; ++j) {
+        row_maxima(field, j, k, largest);
+        std::uint8_t* out = codes_.data() + (block.begin * std::size_t(bricks_.y) + std::size_t(j / kBrick)) * row +
+                            std::size_t(k % kBrick * 16 + j % kBrick * 4);
+        for (std::size_t i = 0; i + 1 < largest.size(); ++i)
+          out[i / kBrick * kBrickCells + i % kBrick] = std::uint8_t(rank.reached(largest[i]));
       }
     }
   });
