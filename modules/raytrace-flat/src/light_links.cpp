@@ -197,8 +197,8 @@ SampleSet LightLinks::lamp_light(const Scene& scene, const SolveSettings& settin
   return samples;
 }
 
-void LightLinks::add_up(const Scene& scene, const SampleSet& lamps, std::span<const float> e, Want want,
-                        SampleSet& samples, const Run& run) const {
+void LightLinks::add_up(const Scene& scene, const SampleSet& lamps, std::span<const float> e, SampleSet& samples,
+                        const Run& run) const {
   const auto channels = std::size_t(lamps.channels);
   const RayValues brought(scene, e, lamps.channels);
   samples.sites = sites_;
@@ -207,7 +207,6 @@ void LightLinks::add_up(const Scene& scene, const SampleSet& lamps, std::span<co
   samples.variance.assign(lamps.variance.size(), 0.0f);
   for (const LinkRound& round : rounds_->all) {
     const wide::Aimer aimer(volume_.lattice().frame, seed_, round.rays, round.first);
-    const wide::NetMean mean(aimer.points(), round.rays);
     parallel_blocks(round.blocks.size(), kBlocksATask, run, "", [&](const Block& task) {
       std::vector<Vec3> values(round.rays);
       wide::Batch batch;
@@ -216,16 +215,15 @@ void LightLinks::add_up(const Scene& scene, const SampleSet& lamps, std::span<co
         const LinkBlock& block = round.blocks[b];
         for (std::size_t place = 0; place < block.sites.size(); ++place) {
           const std::size_t site = block.sites[place];
-          if (const auto sum =
-                  want == Want::kLight ? brought.sum(round, block, place, sites_.isovalues[site]) : std::nullopt) {
-            for (std::size_t c = 0; c < channels; ++c) samples.radiance[site * channels + c] += float((*sum)[int(c)]);
-            continue;
+          auto known = brought.moments(round, block, place, sites_.isovalues[site]);
+          if (!known) {
+            // The directions are a function of seed and site: they are made again, not kept.
+            batch.rays.count = 0;
+            if (brought.wants_directions()) aimer.append(sites_, site, batch.rays, batch.world);
+            brought.fill(round, block, place, sites_.isovalues[site], batch.world, values);
+            known = wide::NetMean::in_order(values);
           }
-          // The directions are a function of seed and site: they are made again, not kept.
-          batch.rays.count = 0;
-          if (brought.wants_directions()) aimer.append(sites_, site, batch.rays, batch.world);
-          brought.fill(round, block, place, sites_.isovalues[site], batch.world, values);
-          const wide::NetMean::Moments moments = mean.moments(values);
+          const wide::NetMean::Moments& moments = *known;
           for (std::size_t c = 0; c < channels; ++c) {
             samples.radiance[site * channels + c] += float(moments.sum[int(c)]);
             samples.variance[site] += float(moments.differences[int(c)] / double(channels));
@@ -263,18 +261,17 @@ Solution LightLinks::solve(const Scene& scene, const SolveSettings& settings, co
     throw InvalidInput(fmt::format("bounces = {}: links whose ends were dropped allow 0", settings.bounces));
   Solution solution;
   const SampleSet lamps = lamp_light(scene, settings, solution.counters, run);
-  add_up(scene, lamps, {}, settings.bounces == 0 ? Want::kVariance : Want::kLight, solution.samples, run);
+  add_up(scene, lamps, {}, solution.samples, run);
   std::vector<float> light;
   if (settings.bounces != 0) {
     const SampleSet straight = std::move(solution.samples);
     light = Solver(*this, scene, straight, to_grid, run).before_last(settings, start, solution);
     // The last reflection with what it takes to know its noise; the probes see the same light with other rays.
-    add_up(scene, lamps, light, Want::kVariance, solution.samples, run);
+    add_up(scene, lamps, light, solution.samples, run);
   }
   if (again_ == nullptr) return solution;
   SampleSet again;
-  again_->add_up(scene, again_->lamp_light(scene, settings, solution.counters, run), light, Want::kVariance, again,
-                 run);
+  again_->add_up(scene, again_->lamp_light(scene, settings, solution.counters, run), light, again, run);
   wide::calibrate_variance(solution.samples, probes_, again, rays_);
   return solution;
 }

@@ -6,6 +6,8 @@
 #include <mutex>
 #include <utility>
 
+#include "wide/net_mean.h"
+
 namespace isolux {
 namespace {
 
@@ -40,8 +42,8 @@ void add_block(const LinkBlock& block, std::span<const float> light, std::span<f
 class BlockMaker {
  public:
   BlockMaker(const Sites& sites, std::span<const std::uint32_t> numbers, const LinkTargets* targets,
-             const RoundRequest& request, std::uint64_t seed)
-      : sites_(sites), numbers_(numbers), targets_(targets), request_(request), seed_(seed) {}
+             const RoundRequest& request, std::span<const std::uint32_t> order, std::uint64_t seed)
+      : sites_(sites), numbers_(numbers), targets_(targets), request_(request), order_(order), seed_(seed) {}
 
   [[nodiscard]] LinkBlock make(const GatheredRays& gathered) const {
     const std::size_t words = (request_.rays + 63) / 64;
@@ -68,10 +70,11 @@ class BlockMaker {
                 std::vector<std::uint32_t>& targets) const {
     const LinkTargets::Draws draws = LinkTargets::draws_of(seed_, site);
     const Vec3 origin(sites_.positions[site]);
-    for (std::size_t k = 0; k < request_.rays; ++k) {
+    for (std::size_t at = 0; at < request_.rays; ++at) {
+      const std::size_t k = order_[at];
       const std::size_t i = place * request_.rays + k;
       if (gathered.escaped(i)) continue;
-      hits[k / 64] |= std::uint64_t(1) << k % 64;
+      hits[at / 64] |= std::uint64_t(1) << at % 64;
       if (request_.question == RayQuestion::kAnyHit) continue;
       const Vec3 direction(gathered.index_direction[0][i], gathered.index_direction[1][i],
                            gathered.index_direction[2][i]);
@@ -84,6 +87,7 @@ class BlockMaker {
   std::span<const std::uint32_t> numbers_;
   const LinkTargets* targets_;
   const RoundRequest& request_;
+  std::span<const std::uint32_t> order_;
   std::uint64_t seed_;
 };
 
@@ -92,7 +96,9 @@ class BlockMaker {
 LinkRound trace_round(const Volume& volume, const Sites& sites, std::span<const std::uint32_t> numbers,
                       const LinkTargets* targets, const RoundRequest& request, const Run& run,
                       TraceCounters& counters) {
-  LinkRound round{.first = request.first, .rays = request.rays, .blocks = {}};
+  // A net's points beyond the first ones are those with some bits flipped: the same order.
+  const wide::NetMean mean(wide::SobolPoints(request.rays), request.rays);
+  LinkRound round{.first = request.first, .rays = request.rays, .order = mean.order(), .blocks = {}};
   const GatherSettings settings{.rays = int(request.rays),
                                 .outer = request.outer,
                                 .question = request.question,
@@ -104,7 +110,7 @@ LinkRound trace_round(const Volume& volume, const Sites& sites, std::span<const 
     some.isovalues.push_back(sites.isovalues[site]);
     some.normals.push_back(sites.normals[site]);
   }
-  const BlockMaker maker(sites, numbers, targets, request, run.seed);
+  const BlockMaker maker(sites, numbers, targets, request, round.order, run.seed);
   std::mutex adding;
   add(counters, gather(volume, numbers.empty() ? sites : some, settings, run, [&](const GatheredRays& gathered) {
         LinkBlock block = maker.make(gathered);

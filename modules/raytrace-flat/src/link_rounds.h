@@ -6,6 +6,7 @@
 #include <isolux/core/volume.h>
 #include <isolux/raytrace_flat/gather.h>
 
+#include <algorithm>
 #include <bit>
 #include <cstddef>
 #include <cstdint>
@@ -24,9 +25,9 @@ inline constexpr std::size_t kBlocksATask = 4;
 /// together, whose ends do so too.
 struct LinkBlock {
   std::vector<std::uint32_t> sites;
-  std::vector<std::uint64_t> hits;     ///< a bit a ray; whole words a site
+  std::vector<std::uint64_t> hits;     ///< a bit a ray, in LinkRound::order; whole words a site
   std::vector<std::uint32_t> begins;   ///< of each site's targets, and the end
-  std::vector<std::uint32_t> targets;  ///< of the rays that hit, in their order
+  std::vector<std::uint32_t> targets;  ///< of the rays that hit, in that order
 
   [[nodiscard]] std::size_t bytes() const {
     return 4 * (sites.size() + begins.size() + targets.size()) + 8 * hits.size();
@@ -37,17 +38,31 @@ struct LinkBlock {
 struct LinkRound {
   std::size_t first = 0;
   std::size_t rays = 0;
+  std::vector<std::uint32_t> order;  ///< of a site's rays, less `first`: neighbouring strata (NetMean::order)
   std::vector<LinkBlock> blocks;
 
   [[nodiscard]] std::size_t words() const { return (rays + 63) / 64; }
-  [[nodiscard]] bool hit(const LinkBlock& block, std::size_t site, std::size_t ray) const {
-    return (block.hits[site * words() + ray / 64] >> ray % 64 & 1) != 0;
+  /// Does ray order[at] of the block's site hit?
+  [[nodiscard]] bool hit(const LinkBlock& block, std::size_t site, std::size_t at) const {
+    return (block.hits[site * words() + at / 64] >> at % 64 & 1) != 0;
   }
   /// How many of a site's rays hit.
   [[nodiscard]] std::size_t hits(const LinkBlock& block, std::size_t site) const {
     std::size_t count = 0;
     for (std::size_t w = site * words(); w < (site + 1) * words(); ++w)
       count += std::size_t(std::popcount(block.hits[w]));
+    return count;
+  }
+  /// How often one of two neighbouring strata hits and the other does not.
+  [[nodiscard]] std::size_t changes(const LinkBlock& block, std::size_t site) const {
+    std::size_t count = 0;
+    for (std::size_t w = 0; w < words(); ++w) {
+      const std::uint64_t bits = block.hits[site * words() + w];
+      const std::uint64_t next = w + 1 < words() ? block.hits[site * words() + w + 1] : 0;
+      const std::size_t pairs = std::min<std::size_t>(64, rays - 1 - 64 * w);
+      const std::uint64_t counted = pairs < 64 ? (std::uint64_t(1) << pairs) - 1 : ~std::uint64_t(0);
+      count += std::size_t(std::popcount((bits ^ (bits >> 1 | next << 63)) & counted));
+    }
     return count;
   }
 };

@@ -13,6 +13,7 @@
 #include "environment.h"
 #include "link_rounds.h"
 #include "wide/hemisphere.h"
+#include "wide/net_mean.h"
 
 namespace isolux {
 
@@ -28,28 +29,33 @@ class RayValues {
 
   [[nodiscard]] bool wants_directions() const { return uniform_ == nullptr; }
 
-  /// The sum over the site's rays where it is known without looking at each: light without reflections under a uniform
-  /// environment.
-  [[nodiscard]] std::optional<Vec3> sum(const LinkRound& round, const LinkBlock& block, std::size_t place,
-                                        float isovalue) const {
+  /// What the site's rays bring together, where it is known without looking at each: light without reflections under a
+  /// uniform environment.
+  [[nodiscard]] std::optional<wide::NetMean::Moments> moments(const LinkRound& round, const LinkBlock& block,
+                                                              std::size_t place, float isovalue) const {
     if (uniform_ == nullptr || !e_.empty()) return std::nullopt;
     const double hits = double(round.hits(block, place));
-    return (double(round.rays) - hits) * Vec3(uniform_->radiance) + hits * Vec3(scene_.emission.at(isovalue));
+    const Vec3 sky(uniform_->radiance);
+    const Vec3 emission(scene_.emission.at(isovalue));
+    return wide::NetMean::Moments{
+        .sum = (double(round.rays) - hits) * sky + hits * emission,
+        .differences = double(round.changes(block, place)) * (sky - emission) * (sky - emission)};
   }
 
-  /// `world` holds the directions of the site's rays where they are wanted.
+  /// One value a ray, in round.order. `world` holds the directions of the site's rays where they are wanted.
   void fill(const LinkRound& round, const LinkBlock& block, std::size_t place, float isovalue,
             const wide::Directions& world, std::vector<Vec3>& values) const {
     const Vec3 albedo(scene_.albedo.at(isovalue));
     const Vec3 emission(scene_.emission.at(isovalue));
     const std::uint32_t* target = block.targets.data() + block.begins[place];
-    for (std::size_t k = 0; k < round.rays; ++k) {
-      if (round.hit(block, place, k)) {
-        values[k] = e_.empty() ? emission : emission + albedo * light_at(*target++);
+    for (std::size_t at = 0; at < round.rays; ++at) {
+      if (round.hit(block, place, at)) {
+        values[at] = e_.empty() ? emission : emission + albedo * light_at(*target++);
       } else if (uniform_ != nullptr) {
-        values[k] = Vec3(uniform_->radiance);
+        values[at] = Vec3(uniform_->radiance);
       } else {
-        values[k] = environment_.radiance({world.axis[0][k], world.axis[1][k], world.axis[2][k]});
+        const std::uint32_t k = round.order[at];
+        values[at] = environment_.radiance({world.axis[0][k], world.axis[1][k], world.axis[2][k]});
       }
     }
   }

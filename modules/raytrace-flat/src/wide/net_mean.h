@@ -23,6 +23,10 @@ class NetMean {
     Vec3 differences{0.0};
   };
   [[nodiscard]] Moments moments(std::span<const Vec3> values) const;
+  /// The same of values that come in order().
+  [[nodiscard]] static Moments in_order(std::span<const Vec3> values);
+  /// Neighbours of this list are neighbouring strata.
+  [[nodiscard]] const std::vector<std::uint32_t>& order() const { return order_; }
 
   /// Writes e and its squared standard error for a site, from one value a ray. The variance is that of neighbouring
   /// strata (successive differences, von Neumann 1941): plain variance / n would count the differences between far

@@ -98,13 +98,9 @@ class LightLinks {
   void trace(std::size_t first, std::size_t rays, std::span<const std::uint32_t> numbers, const Run& run);
   [[nodiscard]] SampleSet lamp_light(const Scene& scene, const SolveSettings& settings, TraceCounters& counters,
                                      const Run& run) const;
-  enum class Want : std::uint8_t {
-    kLight,    ///< variances are left without meaning
-    kVariance  ///< light and variances
-  };
   /// e of the sites: light that comes straight from lamps, and what the rays bring; reflected light
   /// from `e` at the targets (none if empty).
-  void add_up(const Scene& scene, const SampleSet& lamps, std::span<const float> e, Want want, SampleSet& samples,
+  void add_up(const Scene& scene, const SampleSet& lamps, std::span<const float> e, SampleSet& samples,
               const Run& run) const;
 
   const Volume& volume_;
