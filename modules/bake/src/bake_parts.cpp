@@ -16,18 +16,6 @@
 namespace isolux {
 namespace {
 
-void require_range(const Volume& volume, const std::optional<ValueRange>& wanted) {
-  const ValueRange range = value_range(volume);
-  if (range.low == range.high) {
-    throw InvalidInput(
-        fmt::format("{}: every voxel is {}; a constant volume has no level set to light", volume.name, range.low));
-  }
-  if (wanted && (wanted->high < range.low || wanted->low > range.high)) {
-    throw InvalidInput(fmt::format("isovalue range {}:{}: the values of {} go from {} to {}", wanted->low, wanted->high,
-                                   volume.name, range.low, range.high));
-  }
-}
-
 /// Texels whose own level set was not asked for.
 std::uint64_t texels_outside(const Volume& volume, const Lattice& texels, const ValueRange& wanted, const Run& run) {
   const TrilinearField field(volume);
@@ -62,20 +50,36 @@ IlluminationGrid error_grid(const Volume& volume, const SampleSet& samples, cons
 
 }  // namespace
 
+void require_lightable(const Volume& volume, const BakeSettings& settings) {
+  require_usable(volume);
+  const std::optional<ValueRange>& wanted = settings.isovalues;
+  const ValueRange range = value_range(volume);
+  if (range.low == range.high) {
+    throw InvalidInput(
+        fmt::format("{}: every voxel is {}; a constant volume has no level set to light", volume.name, range.low));
+  }
+  if (wanted && (wanted->high < range.low || wanted->low > range.high)) {
+    throw InvalidInput(fmt::format("isovalue range {}:{}: the values of {} go from {} to {}", wanted->low, wanted->high,
+                                   volume.name, range.low, range.high));
+  }
+}
+
+SiteRequest site_request(const BakeSettings& settings, const Lattice& texels, OuterSide outer) {
+  return {.texels = texels,
+          .count = settings.samples,
+          .isovalues = settings.isovalues,
+          .outer = outer,
+          .gradient = settings.trace.gradient};
+}
+
 Sites sample_sites(const Volume& volume, OuterSide outer, const BakeSettings& settings, const Lattice& texels,
                    const Stages& stages, const Run& run, BakeResult& result) {
-  require_usable(volume);
-  require_range(volume, settings.isovalues);
+  require_lightable(volume, settings);
   const auto sampler = stages.samplers.create(settings.sampler.name, settings.sampler.settings);
   const Stopwatch watch;
-  Sites sites = sampler->sample(volume,
-                                {.texels = texels,
-                                 .count = settings.samples,
-                                 .per_texel = sites_a_texel(volume.lattice(), texels, settings),
-                                 .isovalues = settings.isovalues,
-                                 .outer = outer,
-                                 .gradient = settings.trace.gradient},
-                                run);
+  SiteRequest request = site_request(settings, texels, outer);
+  request.per_texel = sites_a_texel(volume.lattice(), texels, settings);
+  Sites sites = sampler->sample(volume, request, run);
   result.sites = sites.size();
   if (result.sites == 0)
     throw InvalidInput(fmt::format("{}: no site has a normal and an isovalue in the range", volume.name));

@@ -9,6 +9,12 @@ namespace isolux {
   return settings.target_rmse > 0.0 || settings.target_seconds > 0.0;
 }
 
+/// \throw InvalidInput if the volume is not usable or constant, or the isovalues asked for lie outside its values
+void require_lightable(const Volume& volume, const BakeSettings& settings);
+
+/// What a sampler is asked for, but for the number of sites a texel.
+[[nodiscard]] SiteRequest site_request(const BakeSettings& settings, const Lattice& texels, OuterSide outer);
+
 /// The sites of a bake; counts those left out in result.skipped. \throw InvalidInput if the volume is not usable or no
 /// site is found
 [[nodiscard]] Sites sample_sites(const Volume& volume, OuterSide outer, const BakeSettings& settings,

@@ -96,10 +96,10 @@ class LightLinks::Solver {
 
 LightLinks::LightLinks(const Volume& volume, Sites sites, const LinkSettings& settings, const Run& run)
     : LightLinks(volume, std::move(sites), settings, run, WithoutProbes{}) {
-  if (settings.ends == LinkEnds::kKept) {
-    rounds_->targets = std::make_shared<const LinkTargets>(
-        volume, sites_, settings.texels.value_or(cell_lattice(volume.lattice())), run);
-  }
+  const Lattice texels = settings.texels.value_or(cell_lattice(volume.lattice()));
+  if (settings.ends == LinkEnds::kKept)
+    rounds_->targets = std::make_shared<const LinkTargets>(volume, sites_, texels, run);
+  if (settings.ends == LinkEnds::kAtTexels) rounds_->targets = std::make_shared<const LinkTargets>(volume, texels);
   trace(0, std::size_t(settings.rays), {}, run);
   probes_ = wide::choose_probes(sites_);
   Run other = run;
@@ -126,7 +126,7 @@ LightLinks::~LightLinks() = default;
 void LightLinks::trace(std::size_t first, std::size_t rays, std::span<const std::uint32_t> numbers, const Run& run) {
   Run own = run;
   own.seed = seed_;
-  const auto question = settings_.ends == LinkEnds::kKept ? RayQuestion::kFirstHit : RayQuestion::kAnyHit;
+  const auto question = settings_.ends == LinkEnds::kDropped ? RayQuestion::kAnyHit : RayQuestion::kFirstHit;
   const RoundRequest request{.first = first, .rays = rays, .outer = settings_.outer, .question = question};
   rounds_->all.push_back(trace_round(volume_, sites_, numbers, rounds_->targets.get(), request, own, counters_));
 }
@@ -150,7 +150,7 @@ void LightLinks::extend(std::span<const std::uint32_t> sites, const Run& run) {
 }
 
 void LightLinks::append(const Sites& more, const Run& run) {
-  if (settings_.ends == LinkEnds::kKept) throw InvalidInput("links whose ends are kept take no more sites");
+  if (settings_.ends == LinkEnds::kKept) throw InvalidInput("links that know the sites at the texels take no more sites");
   if (more.size() == 0) return;
   std::vector<std::uint32_t> numbers(more.size());
   std::iota(numbers.begin(), numbers.end(), std::uint32_t(sites_.size()));
@@ -249,6 +249,15 @@ Solution LightLinks::direct(const Scene& scene, const SolveSettings& settings, c
   SolveSettings none = settings;
   none.bounces = 0;
   return solve(scene, none, {}, run);
+}
+
+SampleSet LightLinks::reflecting(const Scene& scene, std::span<const float> texels, const SolveSettings& settings,
+                                 const Run& run) const {
+  if (settings_.ends != LinkEnds::kAtTexels) throw InvalidInput("light is given at texels: the links must end there");
+  SampleSet samples;
+  TraceCounters counters;
+  add_up(scene, lamp_light(scene, settings, counters, run), texels, samples, run);
+  return samples;
 }
 
 Solution LightLinks::solve(const Scene& scene, const SolveSettings& settings, const ToGrid& to_grid, const Run& run,

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <isolux/core/error.h>
 #include <isolux/core/random.h>
+#include <isolux/core/spread_labels.h>
 
 #include <algorithm>
 #include <cmath>
@@ -15,22 +16,26 @@ constexpr double kTolerance = 0.01;
 
 }  // namespace
 
-LinkTargets::LinkTargets(const Volume& volume, const Sites& sites, const Lattice& texels, const Run& run)
+LinkTargets::LinkTargets(const Volume& volume, const Lattice& texels)
     : texels_(texels), to_texel_(index_to_index(volume.lattice(), texels)) {
-  if (texels.count() >= kNone)
+  if (texels.count() >= kNoLabel)
     throw InvalidInput(fmt::format("{} texels; light links take at most 2^32 - 2", texels.count()));
-  site_of_texel_.assign(texels.count(), kNone);
+}
+
+LinkTargets::LinkTargets(const Volume& volume, const Sites& sites, const Lattice& texels, const Run& run)
+    : LinkTargets(volume, texels) {
+  site_of_texel_.assign(texels.count(), kNoLabel);
   for (std::size_t s = 0; s < sites.size(); ++s) {
     if (s % 65536 == 0) throw_if_stopped(run);
     const std::uint32_t texel = texel_at(sites.positions[s]);
-    if (texel == kNone || site_of_texel_[texel] != kNone) {
+    if (texel == kNoLabel || site_of_texel_[texel] != kNoLabel) {
       site_of_texel_ = {};
       return;
     }
     site_of_texel_[texel] = std::uint32_t(s);
   }
   if (sites.size() == 0) site_of_texel_ = {};
-  if (sites.size() < site_of_texel_.size()) fill_unlit();
+  if (sites.size() < site_of_texel_.size()) spread_labels(texels.size, site_of_texel_);
 }
 
 std::uint32_t LinkTargets::texel_at(const Vec3f& index) const {
@@ -39,37 +44,10 @@ std::uint32_t LinkTargets::texel_at(const Vec3f& index) const {
   for (int a = 0; a < 3; ++a) {
     const double nearest = std::floor(at[a] + 0.5);
     if (!(std::fabs(at[a] - nearest) <= kTolerance) || nearest < 0.0 || nearest >= double(texels_.size[a]))
-      return kNone;
+      return kNoLabel;
     i[a] = int(nearest);
   }
   return std::uint32_t(texels_.offset(i[0], i[1], i[2]));
-}
-
-void LinkTargets::fill_unlit() {
-  // The front of texels whose site is known, breadth first.
-  std::vector<std::uint32_t> front;
-  for (std::size_t t = 0; t < site_of_texel_.size(); ++t)
-    if (site_of_texel_[t] != kNone) front.push_back(std::uint32_t(t));
-  const std::size_t size[3] = {std::size_t(texels_.size.x), std::size_t(texels_.size.y), std::size_t(texels_.size.z)};
-  std::vector<std::uint32_t> next;
-  while (!front.empty()) {
-    next.clear();
-    for (const std::uint32_t texel : front) {
-      std::size_t stride = 1;
-      for (const std::size_t n : size) {
-        const std::size_t place = texel / stride % n;
-        const auto reach = [&](std::size_t neighbour) {
-          if (site_of_texel_[neighbour] != kNone) return;
-          site_of_texel_[neighbour] = site_of_texel_[texel];
-          next.push_back(std::uint32_t(neighbour));
-        };
-        if (place > 0) reach(texel - stride);
-        if (place + 1 < n) reach(texel + stride);
-        stride *= n;
-      }
-    }
-    front.swap(next);
-  }
 }
 
 LinkTargets::Draws LinkTargets::draws_of(std::uint64_t seed, std::size_t site) {

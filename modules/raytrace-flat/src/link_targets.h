@@ -16,6 +16,9 @@ namespace isolux {
 /// texel stands for the nearest lit one, counted in steps across faces), else a texel.
 class LinkTargets {
  public:
+  /// Texels, whoever the sites are. \throw InvalidInput
+  LinkTargets(const Volume& volume, const Lattice& texels);
+  /// Sites where these sit at the texels. \throw InvalidInput, Cancelled
   LinkTargets(const Volume& volume, const Sites& sites, const Lattice& texels, const Run& run);
 
   [[nodiscard]] bool are_sites() const { return !site_of_texel_.empty(); }
@@ -31,11 +34,9 @@ class LinkTargets {
   [[nodiscard]] std::uint32_t target(const Vec3& index, const Draws& draws, std::uint32_t ray) const;
 
  private:
-  /// The texel whose centre the place is within rounding; kNone if there is none.
+  /// The texel whose centre the place is within rounding; kNoLabel if there is none.
   [[nodiscard]] std::uint32_t texel_at(const Vec3f& index) const;
-  void fill_unlit();
 
-  static constexpr std::uint32_t kNone = 0xFFFFFFFFu;
   Lattice texels_;
   IndexToWorld to_texel_;
   std::vector<std::uint32_t> site_of_texel_;  ///< empty if the sites do not sit at the texels

@@ -13,6 +13,7 @@
 #include <isolux/core/registry.h>
 #include <isolux/core/run.h>
 #include <isolux/core/sample_set.h>
+#include <isolux/core/spread_labels.h>
 #include <isolux/core/stopwatch.h>
 #include <isolux/core/vec.h>
 #include <isolux/core/volume.h>

@@ -19,8 +19,9 @@ namespace isolux {
 
 /// What is kept of each ray.
 enum class LinkEnds : std::uint8_t {
-  kKept,    ///< where it ends: any number of bounces
-  kDropped  ///< only whether it escaped: no bounces; quicker, a bit a ray
+  kKept,      ///< where it ends: any number of bounces
+  kAtTexels,  ///< the texel at its end, whoever the sites are: any number of bounces, and more sites by append()
+  kDropped    ///< only whether it escaped: no bounces; quicker, a bit a ray
 };
 
 struct LinkSettings {
@@ -53,9 +54,9 @@ struct Solution {
 /// Queries may be called from many threads.
 class LightLinks {
  public:
-  /// What a sweep reads from if the sites do not sit at the texels: e of the samples on LinkSettings::texels, every
-  /// texel filled. It must not depend on threads. Sites at texels are read as they are and an unlit texel as the
-  /// nearest lit one; this is not called then and may be empty.
+  /// What a sweep reads from if the sites do not sit at the texels, or their links' ends are kAtTexels: e of the samples
+  /// on LinkSettings::texels, every texel filled. It must not depend on threads. Otherwise sites at texels are read as
+  /// they are and an unlit texel as the nearest lit one; this is not called then and may be empty.
   using ToGrid = std::function<IlluminationGrid(const SampleSet& samples)>;
 
   /// Traces the links. \pre as gather(); the volume must outlive the links. \throw Cancelled, InvalidInput
@@ -69,7 +70,7 @@ class LightLinks {
   void extend(std::span<const std::uint32_t> sites, const Run& run);
 
   /// More sites, behind those that are there, with settings.rays each. Not at the same time as any other call. \throw
-  /// InvalidInput where ends are kept, as these know the sites at the texels
+  /// InvalidInput where ends are kKept, as these know the sites at the texels
   void append(const Sites& more, const Run& run);
 
   [[nodiscard]] const Sites& sites() const { return sites_; }
@@ -88,6 +89,11 @@ class LightLinks {
   /// ends were dropped
   [[nodiscard]] Solution solve(const Scene& scene, const SolveSettings& settings, const ToGrid& to_grid, const Run& run,
                                std::span<const float> start = {}) const;
+
+  /// e where reflected light is not found but given, at the texels (`channels` of the scene each). \pre ends are
+  /// kAtTexels. \throw InvalidInput
+  [[nodiscard]] SampleSet reflecting(const Scene& scene, std::span<const float> texels, const SolveSettings& settings,
+                                     const Run& run) const;
 
  private:
   class Solver;

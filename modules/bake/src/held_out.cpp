@@ -1,0 +1,73 @@
+#include "held_out.h"
+
+#include <isolux/core/random.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace isolux {
+namespace {
+
+/// Enough for the error to some 5 %, if there are so many.
+constexpr std::size_t kMostHeldOut = 6144;
+constexpr std::size_t kTexelsAHeldOut = 8;
+
+}  // namespace
+
+HeldOut::HeldOut(const Volume& volume, const Lattice& texels, const TexelSiteMaker& sites, const LinkSettings& links,
+                 const Run& run) {
+  draw(texels, sites, run);
+  for (std::uint64_t side = 0; side < 2; ++side) {
+    Run own = run;
+    own.seed = mix_bits(run.seed ^ mix_bits(1 + side));
+    links_[side] = std::make_unique<LightLinks>(volume, sites.make(texels_), links, own);
+  }
+}
+
+void HeldOut::draw(const Lattice& texels, const TexelSiteMaker& sites, const Run& run) {
+  const std::size_t count = texels.count();
+  RandomStream random(run.seed, 0, 0x4e656564);
+  // One from each of as many equal shares of the texels, of which those that can be lit stay: all are equally likely.
+  const auto from_shares = [&](std::size_t shares) {
+    texels_.clear();
+    for (std::size_t i = 0; i < shares; ++i) {
+      const std::size_t begin = i * count / shares;
+      const std::size_t share = (i + 1) * count / shares - begin;
+      texels_.push_back(begin + std::min(share - 1, std::size_t(random.uniform_double() * double(share))));
+    }
+    std::vector<std::uint8_t> lit;
+    static_cast<void>(sites.make(texels_, &lit));
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < shares; ++i)
+      if (lit[i] != 0) texels_[kept++] = texels_[i];
+    texels_.resize(kept);
+  };
+  const std::size_t first = std::min(kMostHeldOut, count);
+  from_shares(first);
+  const double can_be_lit = double(texels_.size()) / double(first);
+  const double wanted = std::min(double(kMostHeldOut), std::ceil(can_be_lit * double(count) / double(kTexelsAHeldOut)));
+  if (can_be_lit > 0.0) from_shares(std::min(count, std::size_t(std::ceil(wanted / can_be_lit))));
+}
+
+double HeldOut::squared_error(const Scene& scene, std::span<const float> light, const SolveSettings& settings,
+                              const Run& run) {
+  std::array<std::vector<float>, 2> found;
+  for (std::size_t side = 0; side < 2; ++side) {
+    if (settings.bounces != 0) {
+      found[side] = links_[side]->reflecting(scene, light, settings, run).radiance;
+      continue;
+    }
+    if (straight_[side].empty()) straight_[side] = links_[side]->direct(scene, settings, run).samples.radiance;
+    found[side] = straight_[side];
+  }
+  if (texels_.empty()) return 0.0;
+  const std::size_t channels = found[0].size() / texels_.size();
+  double sum = 0.0;
+  for (std::size_t i = 0; i < found[0].size(); ++i) {
+    const auto predicted = double(light[texels_[i / channels] * channels + i % channels]);
+    sum += (double(found[0][i]) - predicted) * (double(found[1][i]) - predicted);
+  }
+  return std::max(0.0, sum / double(found[0].size()));
+}
+
+}  // namespace isolux

@@ -1,0 +1,27 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "texel_pyramid.h"
+
+namespace isolux {
+
+/// Rays of a texel when it is first traced.
+inline constexpr int kFirstRaysByNeed = 16;
+
+/// Mean squared error of a cell's texels, by the figures of the cell.
+[[nodiscard]] double squared_error(const CellFigures& figures, int level);
+
+/// What is done next: cells that fall apart into eight, and traced texels whose rays are doubled.
+struct NeedSteps {
+  std::vector<TexelPyramid::Cell> refined;
+  std::vector<std::size_t> doubled;  ///< texels, rising
+};
+
+/// The steps that take away most squared error for a ray, as many as bring the error to `goal` times what it is, by the
+/// figures, and at least one of fifty: none only where none helps. Cost: some .2 microseconds a traced texel.
+[[nodiscard]] NeedSteps choose_steps(const TexelPyramid& pyramid, double goal, const Run& run);
+
+}  // namespace isolux
