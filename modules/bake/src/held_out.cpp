@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace isolux {
 namespace {
@@ -14,13 +15,16 @@ constexpr std::size_t kTexelsAHeldOut = 8;
 
 }  // namespace
 
-HeldOut::HeldOut(const Volume& volume, const Lattice& texels, const TexelSiteMaker& sites, const LinkSettings& links,
-                 const Run& run) {
+HeldOut::HeldOut(const Volume& volume, const Scene& scene, const Lattice& texels, const TexelSiteMaker& sites,
+                 const TraceSettings& settings, const Run& run) {
   draw(texels, sites, run);
+  const auto tracer = tracers().create("wide");
   for (std::uint64_t side = 0; side < 2; ++side) {
     Run own = run;
     own.seed = mix_bits(run.seed ^ mix_bits(1 + side));
-    links_[side] = std::make_unique<LightLinks>(volume, sites.make(texels_), links, own);
+    TraceResult traced = tracer->trace(volume, scene, sites.make(texels_), settings, own);
+    light_[side] = std::move(traced.samples.radiance);
+    add(counters_, traced.counters);
   }
 }
 
@@ -49,25 +53,15 @@ void HeldOut::draw(const Lattice& texels, const TexelSiteMaker& sites, const Run
   if (can_be_lit > 0.0) from_shares(std::min(count, std::size_t(std::ceil(wanted / can_be_lit))));
 }
 
-double HeldOut::squared_error(const Scene& scene, std::span<const float> light, const SolveSettings& settings,
-                              const Run& run) {
-  std::array<std::vector<float>, 2> found;
-  for (std::size_t side = 0; side < 2; ++side) {
-    if (settings.bounces != 0) {
-      found[side] = links_[side]->reflecting(scene, light, settings, run).radiance;
-      continue;
-    }
-    if (straight_[side].empty()) straight_[side] = links_[side]->direct(scene, settings, run).samples.radiance;
-    found[side] = straight_[side];
-  }
+double HeldOut::squared_error(std::span<const float> light) const {
   if (texels_.empty()) return 0.0;
-  const std::size_t channels = found[0].size() / texels_.size();
+  const std::size_t channels = light_[0].size() / texels_.size();
   double sum = 0.0;
-  for (std::size_t i = 0; i < found[0].size(); ++i) {
+  for (std::size_t i = 0; i < light_[0].size(); ++i) {
     const auto predicted = double(light[texels_[i / channels] * channels + i % channels]);
-    sum += (double(found[0][i]) - predicted) * (double(found[1][i]) - predicted);
+    sum += (double(light_[0][i]) - predicted) * (double(light_[1][i]) - predicted);
   }
-  return std::max(0.0, sum / double(found[0].size()));
+  return std::max(0.0, sum / double(light_[0].size()));
 }
 
 }  // namespace isolux

@@ -1,11 +1,10 @@
 #pragma once
 
-#include <isolux/raytrace_flat/light_links.h>
-#include <isolux/raytrace_flat/trace_counters.h>
+#include <isolux/core/run.h>
+#include <isolux/raytrace_flat/flat_tracer.h>
 
 #include <array>
 #include <cstddef>
-#include <memory>
 #include <span>
 #include <vector>
 
@@ -13,30 +12,25 @@
 
 namespace isolux {
 
-/// Texels whose light is traced to judge a prediction and never used for it: drawn at random, traced twice with other
-/// random numbers, so that the mean product of both differences is the mean squared error whatever is wrong with it.
+/// Texels whose light is traced to judge a prediction and never used for it: drawn at random, traced twice by paths
+/// with other random numbers. Paths have no bias, so the mean product of both differences is the mean squared error
+/// whatever is wrong with the light, be it how reflections were read.
 class HeldOut {
  public:
-  /// At most 6,144 texels, or one of eight. \pre the volume outlives this \throw Cancelled
-  HeldOut(const Volume& volume, const Lattice& texels, const TexelSiteMaker& sites, const LinkSettings& links,
-          const Run& run);
+  /// At most 6,144 texels, or one of eight. \throw Cancelled
+  HeldOut(const Volume& volume, const Scene& scene, const Lattice& texels, const TexelSiteMaker& sites,
+          const TraceSettings& settings, const Run& run);
 
-  [[nodiscard]] bool empty() const { return texels_.empty(); }
-
-  /// Of light at all texels, the scene's channels each; what is reflected is read from it too, so with `bounces` every
-  /// texel has to be filled.
-  [[nodiscard]] double squared_error(const Scene& scene, std::span<const float> light, const SolveSettings& settings,
-                                     const Run& run);
-  void add_counters(TraceCounters& sum) const {
-    for (const auto& links : links_) add(sum, links->counters());
-  }
+  /// Of light at all texels, the scene's channels each.
+  [[nodiscard]] double squared_error(std::span<const float> light) const;
+  [[nodiscard]] const TraceCounters& counters() const { return counters_; }
 
  private:
   void draw(const Lattice& texels, const TexelSiteMaker& sites, const Run& run);
 
   std::vector<std::size_t> texels_;
-  std::array<std::unique_ptr<LightLinks>, 2> links_;
-  std::array<std::vector<float>, 2> straight_;  ///< light without reflections
+  std::array<std::vector<float>, 2> light_;
+  TraceCounters counters_;
 };
 
 }  // namespace isolux

@@ -26,6 +26,9 @@ namespace isolux {
 namespace {
 
 constexpr int kMostRoundsByNeed = 16;
+/// A round that leaves more of the squared error than this has stalled; so many in a row are enough.
+constexpr double kProgress = 0.97;
+constexpr int kMostStalled = 2;
 constexpr std::size_t kTexelsABlock = 16384;
 
 class ByNeed {
@@ -48,19 +51,21 @@ class ByNeed {
     const Stopwatch watch;
     BakeResult result;
     trace_wanted();
-    HeldOut held_out(volume_, texels_, sites_, links(settings_.target_rmse < 0.012 ? 128 : 32), run_);
+    TraceSettings judged = settings_.trace;
+    judged.rays = settings_.target_rmse < 0.012 ? 128 : 32;
+    const HeldOut held_out(volume_, scene_, texels_, sites_, judged, run_);
+    int stalled = 0;
     for (int round = 0;; ++round) {
       solve(result);
-      pyramid_.update(run_);
-      light_ = pyramid_.light(run_);
-      fill_for_reflections();
-      squared_error_ = held_out.squared_error(scene_, light_, solve_settings(), run_);
+      const double before = std::exchange(squared_error_, held_out.squared_error(light_));
       if (squared_error_ <= settings_.target_rmse * settings_.target_rmse || round == kMostRoundsByNeed) break;
+      stalled = round > 0 && squared_error_ > kProgress * before ? stalled + 1 : 0;
+      if (stalled == kMostStalled) break;
       if (!take_steps()) break;
       trace_wanted();
     }
     result.seconds["trace"] = watch.seconds() - result.seconds["bounces"];
-    held_out.add_counters(result.counters);
+    add(result.counters, held_out.counters());
     finish(result);
     return result;
   }
@@ -96,16 +101,29 @@ class ByNeed {
     traced_texels_.insert(traced_texels_.end(), texels.begin(), texels.end());
   }
 
-  /// Finds the light of the traced texels and hands it to the pyramid.
+  /// The light of the traced texels, and of the others by prediction.
   void solve(BakeResult& result) {
-    if (reflects()) draw_labels();
+    if (!reflects()) {
+      predict(links_->direct(scene_, solve_settings(), run_).samples);
+      return;
+    }
     const Stopwatch watch;
+    draw_labels();
+    SolveSettings settings = solve_settings();
+    if (settings.bounces != kAllBounces) --settings.bounces;
     const auto to_grid = [&](const SampleSet& samples) { return reflecting_grid(samples.radiance); };
     const Solution solution =
-        links_->solve(scene_, solve_settings(), to_grid, run_, light_.empty() ? std::span<const float>{} : start_);
-    if (reflects()) result.seconds["bounces"] += watch.seconds();
-    result.sweeps += solution.sweeps;
-    const SampleSet& samples = solution.samples;
+        links_->solve(scene_, settings, to_grid, run_, light_.empty() ? std::span<const float>{} : start_);
+    start_ = solution.samples.radiance;
+    result.sweeps += solution.sweeps + 1;
+    predict(solution.samples);
+    // Once more by the prediction itself: corners that stand for texels are one draw, the same for all rays.
+    fill_unlit_texels();
+    predict(links_->reflecting(scene_, light_, settings, run_));
+    result.seconds["bounces"] += watch.seconds();
+  }
+
+  void predict(const SampleSet& samples) {
     const auto channels = std::size_t(channels_);
     TexelPyramid::Traced& traced = pyramid_.traced();
     for (std::size_t i = 0; i < traced_texels_.size(); ++i) {
@@ -114,7 +132,8 @@ class ByNeed {
       traced.variance[texel] = samples.variance[i];
       traced.rays[texel] = links_->rays()[i];
     }
-    start_ = samples.radiance;
+    pyramid_.update(run_);
+    light_ = pyramid_.light(run_);
   }
 
   /// Whose light a ray that ends at a texel reads: one site's a texel, so that a sweep costs a pass over the texels.
@@ -135,8 +154,7 @@ class ByNeed {
   }
 
   /// Rays may end beside texels that cannot be lit.
-  void fill_for_reflections() {
-    if (!reflects()) return;
+  void fill_unlit_texels() {
     const std::vector<std::uint8_t> lit = pyramid_.lit();
     const auto channels = std::size_t(channels_);
     for (std::size_t t = 0; t < lit.size(); ++t)

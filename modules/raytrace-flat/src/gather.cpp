@@ -44,7 +44,9 @@ TraceCounters gather(const Volume& volume, const Sites& sites, const GatherSetti
       gathered.index_direction[a] = {batch.rays.direction[a].data(), count};
     }
     gathered.index_distance = {batch.rays.t.data(), count};
-    for (std::size_t i = 0; i < count; ++i) counters.hits += std::uint64_t(!gathered.escaped(i));
+    std::uint32_t hits = 0;  // as wide as a float: vectorises
+    for (std::size_t i = 0; i < count; ++i) hits += std::uint32_t(!gathered.escaped(i));
+    counters.hits += hits;
     sink(gathered);
     const std::scoped_lock lock(adding);
     add(total, counters);

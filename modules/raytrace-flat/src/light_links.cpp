@@ -150,7 +150,8 @@ void LightLinks::extend(std::span<const std::uint32_t> sites, const Run& run) {
 }
 
 void LightLinks::append(const Sites& more, const Run& run) {
-  if (settings_.ends == LinkEnds::kKept) throw InvalidInput("links that know the sites at the texels take no more sites");
+  if (settings_.ends == LinkEnds::kKept)
+    throw InvalidInput("links that know the sites at the texels take no more sites");
   if (more.size() == 0) return;
   std::vector<std::uint32_t> numbers(more.size());
   std::iota(numbers.begin(), numbers.end(), std::uint32_t(sites_.size()));
@@ -254,10 +255,19 @@ Solution LightLinks::direct(const Scene& scene, const SolveSettings& settings, c
 SampleSet LightLinks::reflecting(const Scene& scene, std::span<const float> texels, const SolveSettings& settings,
                                  const Run& run) const {
   if (settings_.ends != LinkEnds::kAtTexels) throw InvalidInput("light is given at texels: the links must end there");
-  SampleSet samples;
-  TraceCounters counters;
-  add_up(scene, lamp_light(scene, settings, counters, run), texels, samples, run);
-  return samples;
+  Solution last;
+  reflect_last(scene, lamp_light(scene, settings, last.counters, run), texels, settings, last, run);
+  return std::move(last.samples);
+}
+
+void LightLinks::reflect_last(const Scene& scene, const SampleSet& lamps, std::span<const float> light,
+                              const SolveSettings& settings, Solution& solution, const Run& run) const {
+  add_up(scene, lamps, light, solution.samples, run);
+  if (again_ == nullptr) return;
+  // The probes see the same light with other rays.
+  SampleSet again;
+  again_->add_up(scene, again_->lamp_light(scene, settings, solution.counters, run), light, again, run);
+  wide::calibrate_variance(solution.samples, probes_, again, rays_);
 }
 
 Solution LightLinks::solve(const Scene& scene, const SolveSettings& settings, const ToGrid& to_grid, const Run& run,
@@ -270,18 +280,14 @@ Solution LightLinks::solve(const Scene& scene, const SolveSettings& settings, co
     throw InvalidInput(fmt::format("bounces = {}: links whose ends were dropped allow 0", settings.bounces));
   Solution solution;
   const SampleSet lamps = lamp_light(scene, settings, solution.counters, run);
-  add_up(scene, lamps, {}, solution.samples, run);
-  std::vector<float> light;
-  if (settings.bounces != 0) {
-    const SampleSet straight = std::move(solution.samples);
-    light = Solver(*this, scene, straight, to_grid, run).before_last(settings, start, solution);
-    // The last reflection with what it takes to know its noise; the probes see the same light with other rays.
-    add_up(scene, lamps, light, solution.samples, run);
+  if (settings.bounces == 0) {
+    reflect_last(scene, lamps, {}, settings, solution, run);
+    return solution;
   }
-  if (again_ == nullptr) return solution;
-  SampleSet again;
-  again_->add_up(scene, again_->lamp_light(scene, settings, solution.counters, run), light, again, run);
-  wide::calibrate_variance(solution.samples, probes_, again, rays_);
+  SampleSet straight;
+  add_up(scene, lamps, {}, straight, run);
+  const std::vector<float> light = Solver(*this, scene, straight, to_grid, run).before_last(settings, start, solution);
+  reflect_last(scene, lamps, light, settings, solution, run);
   return solution;
 }
 

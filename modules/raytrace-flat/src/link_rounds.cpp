@@ -70,12 +70,13 @@ class BlockMaker {
                 std::vector<std::uint32_t>& targets) const {
     const LinkTargets::Draws draws = LinkTargets::draws_of(seed_, site);
     const Vec3 origin(sites_.positions[site]);
+    for (std::size_t at = 0; at < request_.rays; ++at)
+      hits[at / 64] |= std::uint64_t(!gathered.escaped(place * request_.rays + order_[at])) << at % 64;
+    if (request_.question == RayQuestion::kAnyHit) return;
     for (std::size_t at = 0; at < request_.rays; ++at) {
+      if ((hits[at / 64] >> at % 64 & 1) == 0) continue;
       const std::size_t k = order_[at];
       const std::size_t i = place * request_.rays + k;
-      if (gathered.escaped(i)) continue;
-      hits[at / 64] |= std::uint64_t(1) << at % 64;
-      if (request_.question == RayQuestion::kAnyHit) continue;
       const Vec3 direction(gathered.index_direction[0][i], gathered.index_direction[1][i],
                            gathered.index_direction[2][i]);
       targets.push_back(targets_->target(origin + double(gathered.index_distance[i]) * direction, draws,

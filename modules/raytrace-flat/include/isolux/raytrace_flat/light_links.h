@@ -54,9 +54,9 @@ struct Solution {
 /// Queries may be called from many threads.
 class LightLinks {
  public:
-  /// What a sweep reads from if the sites do not sit at the texels, or their links' ends are kAtTexels: e of the samples
-  /// on LinkSettings::texels, every texel filled. It must not depend on threads. Otherwise sites at texels are read as
-  /// they are and an unlit texel as the nearest lit one; this is not called then and may be empty.
+  /// What a sweep reads from if the sites do not sit at the texels, or their links' ends are kAtTexels: e of the
+  /// samples on LinkSettings::texels, every texel filled. It must not depend on threads. Otherwise sites at texels are
+  /// read as they are and an unlit texel as the nearest lit one; this is not called then and may be empty.
   using ToGrid = std::function<IlluminationGrid(const SampleSet& samples)>;
 
   /// Traces the links. \pre as gather(); the volume must outlive the links. \throw Cancelled, InvalidInput
@@ -104,6 +104,9 @@ class LightLinks {
   void trace(std::size_t first, std::size_t rays, std::span<const std::uint32_t> numbers, const Run& run);
   [[nodiscard]] SampleSet lamp_light(const Scene& scene, const SolveSettings& settings, TraceCounters& counters,
                                      const Run& run) const;
+  /// The last reflection, of the light given, with what it takes to know its noise.
+  void reflect_last(const Scene& scene, const SampleSet& lamps, std::span<const float> light,
+                    const SolveSettings& settings, Solution& solution, const Run& run) const;
   /// e of the sites: light that comes straight from lamps, and what the rays bring; reflected light
   /// from `e` at the targets (none if empty).
   void add_up(const Scene& scene, const SampleSet& lamps, std::span<const float> e, SampleSet& samples,
