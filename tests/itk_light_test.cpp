@@ -9,6 +9,7 @@
 #include <cstddef>
 #include <filesystem>
 #include <string>
+#include <vector>
 
 namespace isolux {
 namespace {
@@ -62,6 +63,39 @@ TEST_P(LightInItk, HasTheSameValuesAtTheSamePlaces) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Channels, LightInItk, testing::Values(1, 3));
+
+/// The number of side s, kind k (value, slope) and channel c of a texel differ by a quarter each, in that order.
+TEST(LightOfBothSidesInItk, HasTheInnerSidesNumbersBehindTheOuter) {
+  for (const int channels : {1, 3}) {
+    for (const bool sloped : {false, true}) {
+      const int a_side = channels * (sloped ? 2 : 1);
+      const IlluminationGrid all = turned_grid(2 * a_side);
+      LightFile light{.grid = IlluminationGrid(all.lattice, channels), .metadata = {}};
+      light.inner = light.grid;
+      for (int s = 0; s < 2; ++s) {
+        IlluminationGrid& side = s == 0 ? light.grid : *light.inner;
+        side.detail.slopes.resize(sloped ? side.values.size() : 0);
+        for (std::size_t at = 0; at < side.values.size(); ++at) {
+          const auto c = std::size_t(channels);
+          const std::size_t from = at / c * 2 * std::size_t(a_side) + std::size_t(s * a_side) + at % c;
+          side.values[at] = all.values[from];
+          if (sloped) side.detail.slopes[at] = all.values[from + c];
+        }
+      }
+      const std::string path = testing::TempDir() + "isolux_itk_both_sides.nrrd";
+      write_light(light, path, "left-posterior-superior");
+      using Image = itk::VectorImage<float, 3>;
+      const auto reader = itk::ImageFileReader<Image>::New();
+      reader->SetImageIO(itk::NrrdImageIO::New());
+      reader->SetFileName(path);
+      reader->Update();
+      ASSERT_EQ(reader->GetOutput()->GetNumberOfComponentsPerPixel(), unsigned(2 * a_side));
+      const float* read = reader->GetOutput()->GetBufferPointer();
+      EXPECT_EQ(std::vector<float>(read, read + all.values.size()), all.values);
+      std::filesystem::remove(path);
+    }
+  }
+}
 
 }  // namespace
 }  // namespace isolux

@@ -46,6 +46,8 @@ class BadCommandLine(CommandLineTest):
             (("render", "gen:sphere:8", "-o", "i.png", "--iso", "-.3", "--size", "0x5"), "0x5"),
             (("render", "gen:sphere:8", "-o", "i.png", "--iso", "-.3", "--view", "30"), "--view"),
             (("render", "gen:sphere:8", "-o", "i.png", "--iso", "-.3", "--mode", "global"), "--light"),
+            (("render", "gen:sphere:8", "-o", "i.png", "--iso", "-.3", "--side", "both"), "--side"),
+            (("render", "gen:sphere:8", "-o", "i.png", "--iso", "-.3", "--eye", "1,2"), "--eye"),
             (("probe", "gen:sphere:8", "-o", "o.csv", "--points", "p.csv"), "--light"),
         ]
         for arguments, said in cases:

@@ -86,6 +86,11 @@ void report_bake(const BakeResult& result, Session& session) {
   report["sweeps"] = result.sweeps;
   report["unlit_texels"] = result.unlit_texels;
   report["rmse_estimate"] = result.rmse_estimate;
+  for (std::size_t i = 0; i < result.sides.size(); ++i) {
+    const SideFigures& side = result.sides[i];
+    report["sides"][i == 0 ? "outer" : "inner"] = {
+        {"sites", side.sites}, {"rays", side.rays}, {"rmse_estimate", side.rmse_estimate}};
+  }
 }
 
 /// --texels auto
@@ -112,9 +117,10 @@ void run_bake(const Options& options, Session& session) {
   session.report["rays_per_second"] = double(result.counters.rays) / trace_seconds;
   session.report["settings"] = nlohmann::json::parse(settings_to_json(settings, session.run));
   session.say(fmt::format(
-      "{} texels from {} sites, {:.1f} million rays in {:.1f} s ({:.2f} million a second), error about {:.4f}",
-      result.light.lattice.count(), result.sites, double(result.counters.rays) * 1e-6, trace_seconds,
-      double(result.counters.rays) * 1e-6 / trace_seconds, result.rmse_estimate));
+      "{} texels{} from {} sites, {:.1f} million rays in {:.1f} s ({:.2f} million a second), error about {:.4f}",
+      result.light.lattice.count(), result.sides.empty() ? "" : " of both sides", result.sites,
+      double(result.counters.rays) * 1e-6, trace_seconds, double(result.counters.rays) * 1e-6 / trace_seconds,
+      result.rmse_estimate));
   session.timed("write", [&] {
     if (!options.error_grid.empty()) {
       write_light(make_error_file(result, volume, scene, settings, session.run), options.error_grid, volume.space,

@@ -22,6 +22,7 @@ namespace {
 struct Options {
   VolumeOptions volume;
   LightOptions light;
+  SideOption side;
   TraceOptions trace;
   float isovalue = 0.0f;
   std::string output;
@@ -54,7 +55,8 @@ std::vector<Rgb8> exact_colours(const IsoMesh& mesh, const Volume& volume, const
     TraceSettings settings = options.trace.settings();
     if (baked && !options.trace.bounces_given()) settings.bounces = light_bounces(*baked);
     if (!baked) return light_points(volume, scene, positions(mesh), settings, tracer, session.stages, session.run);
-    const LightReader reader(volume, baked->grid, TexelStorage::kBricks);
+    const IlluminationGrid& grid = options.light.of_side(*baked, options.side.or_outer());
+    const LightReader reader(volume, grid, TexelStorage::kBricks);
     return light_points(volume, scene, positions(mesh), settings, tracer, session.stages, session.run, reader);
   });
   session.report["rays"] = light.counters.rays;
@@ -65,8 +67,10 @@ std::vector<Rgb8> exact_colours(const IsoMesh& mesh, const Volume& volume, const
   return colours;
 }
 
-std::vector<Rgb8> baked_colours(const IsoMesh& mesh, const Volume& volume, const LightFile& light, float isovalue) {
-  const LightReader reader(volume, light.grid, TexelStorage::kBricks);
+std::vector<Rgb8> baked_colours(const IsoMesh& mesh, const Volume& volume, const LightFile& light,
+                                const Options& options) {
+  const float isovalue = options.isovalue;
+  const LightReader reader(volume, options.light.of_side(light, options.side.or_outer()), TexelStorage::kBricks);
   const Vec3f albedo = light_albedo(light, isovalue);
   std::vector<Rgb8> colours;
   for (const Vec3f& p : positions(mesh)) {
@@ -75,8 +79,10 @@ std::vector<Rgb8> baked_colours(const IsoMesh& mesh, const Volume& volume, const
   return colours;
 }
 
-OuterSide outer_side(const Options& options, OuterSide otherwise) {
-  if (options.outer.empty()) return otherwise;
+/// What the mesh's normals point to: the side whose light it shows, unless the user says otherwise. `lit`: the outer
+/// side of the light or the scene.
+OuterSide facing(const Options& options, OuterSide lit) {
+  if (options.outer.empty()) return options.side.or_outer() == LevelSetSide::kInner ? opposite(lit) : lit;
   return options.outer == "higher" ? OuterSide::kHigher : OuterSide::kLower;
 }
 
@@ -105,13 +111,15 @@ void run_extract(const Options& options, Session& session) {
   apply_settings(options.set, {{"extractor", &choice.settings}});
   require_choice(session.stages.extractors, choice);
   require_choice(session.stages.tracers, {options.trace.tracer(), {}});
+  if (options.side.given() && !options.light.given() && !options.exact_light)
+    throw UsageError("--side: it chooses whose light; give --light LIGHT.nrrd or --exact-light");
   const Volume volume = options.volume.read(session);
   std::optional<LightFile> light;
   if (options.light.given()) light = options.light.read(volume, session);
   const Scene scene = scene_for(options, light);
   warn_outside_range(volume, options.isovalue, session);
 
-  const OuterSide outer = outer_side(options, light ? light_outer(*light) : scene.outer);
+  const OuterSide outer = facing(options, light ? light_outer(*light) : scene.outer);
   const auto extractor = session.stages.extractors.create(choice.name, choice.settings);
   const IsoMesh mesh = session.timed("extract", [&] {
     return extractor->extract(volume,
@@ -124,9 +132,9 @@ void run_extract(const Options& options, Session& session) {
   });
   std::vector<Rgb8> colours;
   if (options.exact_light) {
-    colours = exact_colours(mesh, volume, scene, light, options, session);
+    colours = exact_colours(mesh, volume, scene_of_side(scene, options.side.or_outer()), light, options, session);
   } else if (light) {
-    colours = session.timed("light", [&] { return baked_colours(mesh, volume, *light, options.isovalue); });
+    colours = session.timed("light", [&] { return baked_colours(mesh, volume, *light, options); });
   }
   session.timed("write", [&] {
     write_atomically_by_name(options.output, [&](const std::string& path) { write_mesh(mesh, colours, path); });
@@ -156,6 +164,8 @@ void add_extract_command(CLI::App& program, Session& session) {
       ->required()
       ->type_name("MESH.ply");
   options->light.add_to(command);
+  options->side.add_to(
+      command, "whose light, and where the normals point: outer (default), or inner, which --light needs to have");
   command.add_flag(
       "--exact-light", options->exact_light,
       "trace the light at the vertices; with --light too, that light's scene is taken and half the rays do");

@@ -24,6 +24,7 @@ namespace {
 struct Options {
   VolumeOptions volume;
   LightOptions light;
+  SideOption side;
   std::string points;
   std::string output;
 };
@@ -84,7 +85,7 @@ void run_probe(const Options& options, Session& session) {
   const LightFile light = options.light.read(volume, session);
   const std::vector<Vec3> points = session.timed("read", [&] { return read_points(options.points); });
   const TrilinearField field(volume);
-  const LightReader reader(volume, light.grid, TexelStorage::kBricks);
+  const LightReader reader(volume, options.light.of_side(light, options.side.or_outer()), TexelStorage::kBricks);
   std::size_t outside = 0;
   session.timed("write", [&] {
     write_atomically(options.output, [&](std::ostream& out) {
@@ -114,6 +115,7 @@ void add_probe_command(CLI::App& program, Session& session) {
   const auto options = std::make_shared<Options>();
   options->volume.add_to(command);
   options->light.add_to(command);
+  options->side.add_to(command, "whose light: outer (default), or inner where the light has both");
   command.add_option("--points", options->points, "one point a line; a first line may name the columns")
       ->required()
       ->type_name("IN.csv");

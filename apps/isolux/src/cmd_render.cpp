@@ -7,6 +7,7 @@
 #include <cmath>
 #include <memory>
 #include <optional>
+#include <utility>
 
 #include "bake_options.h"
 #include "commands.h"
@@ -17,13 +18,18 @@
 namespace isolux {
 namespace {
 
+/// Tangent of half the angle of view from within a volume: 60 degrees.
+constexpr double kHalfHeightFromWithin = 0.577;
+
 struct Options {
   VolumeOptions volume;
   LightOptions light;
+  SideOption side;
   float isovalue = 0.0f;
   std::string output;
   std::string size = "800x600";
   std::string view = "30,20";
+  std::string eye;
   std::string mode;
   int samples = 3;
   double exposure = 0.0;
@@ -35,9 +41,38 @@ void expose(Image& image, double stops) {
   for (Vec3f& p : image.pixels) p *= factor;
 }
 
+/// Baked light as a shader. A light of both sides shows each where it is, whatever --outer says.
+Shader baked_shader(const Volume& volume, const LightFile& light, const Options& options, OuterSide outer) {
+  const auto reading = [&](LevelSetSide side) -> LightAt {
+    const auto reader =
+        std::make_shared<LightReader>(volume, options.light.of_side(light, side), TexelStorage::kBricks);
+    const double isovalue = double(options.isovalue);
+    return [reader, isovalue](const SurfacePoint& point) { return reader->at_index(point.index, isovalue); };
+  };
+  const Vec3f albedo = light_albedo(light, options.isovalue);
+  if (!light.inner && options.side.or_outer() == LevelSetSide::kOuter)
+    return global_shader(reading(LevelSetSide::kOuter), albedo);
+  LightAt first = reading(LevelSetSide::kOuter);
+  LightAt second = reading(LevelSetSide::kInner);
+  if (outer != light_outer(light)) std::swap(first, second);
+  return global_shader(std::move(first), std::move(second), albedo);
+}
+
+/// At the middle of the box from outside, or out of --eye.
+Camera camera_of(const Options& options, const Lattice& volume, double aspect) {
+  const auto view = parse_numbers("--view", options.view, 2);
+  Camera camera = orbit_camera(volume, view[0], view[1], aspect);
+  if (options.eye.empty()) return camera;
+  const auto eye = parse_numbers("--eye", options.eye, 3);
+  camera.eye = {eye[0], eye[1], eye[2]};
+  camera.half_height = kHalfHeightFromWithin;
+  return camera;
+}
+
 void run_render(const Options& options, Session& session) {
   const auto [width, height] = parse_size2("--size", options.size);
   const auto view = parse_numbers("--view", options.view, 2);
+  if (!options.eye.empty()) static_cast<void>(parse_numbers("--eye", options.eye, 3));
   const std::string mode = !options.mode.empty() ? options.mode : options.light.given() ? "global" : "local";
   if ((mode == "global" || mode == "both") && !options.light.given()) {
     throw UsageError("--mode " + mode + ": it shows a light; give --light LIGHT.nrrd");
@@ -52,16 +87,13 @@ void run_render(const Options& options, Session& session) {
       .width = width, .height = height, .supersampling = options.samples, .isovalue = options.isovalue};
   settings.outer = light ? light_outer(*light) : OuterSide::kLower;
   if (!options.outer.empty()) settings.outer = options.outer == "higher" ? OuterSide::kHigher : OuterSide::kLower;
-  const Camera camera = orbit_camera(volume.lattice(), view[0], view[1], double(width) / height);
+  settings.only = options.side.given();
+  const Camera camera = camera_of(options, volume.lattice(), double(width) / height);
   const auto draw = [&](const Shader& shader) { return render(volume, camera, settings, shader, session.run); };
   Image image = session.timed("render", [&]() -> Image {
     if (mode == "normal") return draw(normal_shader());
     if (mode == "local") return draw(local_shader(albedo));
-    const LightReader reader(volume, light->grid, TexelStorage::kBricks);
-    const LightAt at = [&](const SurfacePoint& point) {
-      return reader.at_index(point.index, double(options.isovalue));
-    };
-    Image global = draw(global_shader(at, albedo));
+    Image global = draw(baked_shader(volume, *light, options, settings.outer));
     expose(global, options.exposure);
     return mode == "both" ? side_by_side(draw(local_shader(albedo)), global, 4, Vec3f(1.0f)) : global;
   });
@@ -81,12 +113,17 @@ void add_render_command(CLI::App& program, Session& session) {
   command.add_option("--iso", options->isovalue, "isovalue")->required()->type_name("H");
   command.add_option("-o,--output", options->output, "the picture to write")->required()->type_name("IMAGE.png");
   options->light.add_to(command);
+  options->side.add_to(command,
+                       "show this side alone and look through the other (default: both, each in its own light where "
+                       "the light has it)");
   command.add_option("--size", options->size, "pixels (default 800x600)")->type_name("WxH");
   command
       .add_option("--view", options->view,
                   "from where, in degrees (default 30,20): azimuth 0 looks along +y, 90 along -x; elevation 90 "
                   "looks down")
       ->type_name("AZIMUTH,ELEVATION");
+  command.add_option("--eye", options->eye, "look from this place of the world, in the direction of --view")
+      ->type_name("X,Y,Z");
   command
       .add_option("--mode", options->mode,
                   "global: the baked light (default with --light); local: a headlight; both: side by side; "

@@ -9,6 +9,15 @@ void LightOptions::add_to(CLI::App& command) {
   command.add_flag("--force", force_, "use the light of another volume all the same");
 }
 
+void SideOption::add_to(CLI::App& command, const std::string& help) {
+  command.add_option("--side", name_, help)->check(CLI::IsMember({"outer", "inner"}));
+}
+
+std::optional<LevelSetSide> SideOption::given() const {
+  if (name_.empty()) return std::nullopt;
+  return name_ == "inner" ? LevelSetSide::kInner : LevelSetSide::kOuter;
+}
+
 LightFile LightOptions::read(const Volume& volume, Session& session) const {
   return session.timed("read", [&] {
     LightFile light = read_light(path_);

@@ -3,6 +3,7 @@
 #include <isolux/volume_io/light_file.h>
 
 #include <CLI/App.hpp>
+#include <optional>
 #include <string>
 
 #include "session.h"
@@ -16,10 +17,25 @@ class LightOptions {
   [[nodiscard]] bool given() const { return !path_.empty(); }
   /// Reads the light and refuses that of another volume unless --force. \throw IoError, InvalidInput
   [[nodiscard]] LightFile read(const Volume& volume, Session& session) const;
+  /// The light of one side of what was read. \throw InvalidInput if it does not have it
+  [[nodiscard]] const IlluminationGrid& of_side(const LightFile& light, LevelSetSide side) const {
+    return light_of_side(light, side, path_);
+  }
 
  private:
   std::string path_;
   bool force_ = false;
+};
+
+/// --side outer|inner.
+class SideOption {
+ public:
+  void add_to(CLI::App& command, const std::string& help);
+  [[nodiscard]] std::optional<LevelSetSide> given() const;
+  [[nodiscard]] LevelSetSide or_outer() const { return given().value_or(LevelSetSide::kOuter); }
+
+ private:
+  std::string name_;
 };
 
 }  // namespace isolux

@@ -178,6 +178,41 @@ TEST(SurfaceRenderer, ShowsTheHeadlightAndTheSkyWithoutLight) {
   EXPECT_GT(brightness(kSize / 2 + 30), brightness(kSize / 2 - 30)) << "the sky is above";
 }
 
+// gen:sphere seen from the middle of its box: back faces all around.
+TEST(SurfaceRenderer, ShowsTheInnerSideInItsOwnLight) {
+  const test::EglContext context;
+  if (!context) GTEST_SKIP() << context.why();
+  const auto volume = std::make_shared<const Volume>(read_volume("gen:sphere:32"));
+  const Lattice texels = cell_lattice(volume->lattice());
+  const auto white = [&](float e) {
+    IlluminationGrid light(texels, 1);
+    light.values.assign(light.values.size(), e);
+    return light;
+  };
+  SurfaceRenderer renderer(volume);
+  renderer.set_surface(SurfaceMaker(volume, extractors(), {}).make({.isovalue = -0.3f}, {}, {}).mesh, -0.3f);
+  const auto middle_from = [&](const Vec3& eye) {
+    SurfaceView view;
+    view.camera = Camera{.eye = eye};
+    view.lighting = Lighting::kGlobal;
+    Target target;
+    renderer.draw(view);
+    target.read();
+    return int(target.colours[std::size_t(kSize / 2) * kSize + kSize / 2][0]);
+  };
+  const Vec3 within(0.5);
+  const Vec3 outside(0.5, -1.5, 0.5);
+  renderer.set_light(white(0.5f));
+  const int dim = middle_from(within);
+  EXPECT_LT(dim, srgb_code(0.8f * 0.1f) + 2) << "without light of its own the inner side is dim";
+  renderer.set_inner_light(white(0.25f));
+  EXPECT_NEAR(middle_from(within), srgb_code(0.8f * 0.25f), 1);
+  EXPECT_NEAR(middle_from(outside), srgb_code(0.8f * 0.5f), 1);
+  renderer.set_light(white(0.5f));
+  EXPECT_EQ(middle_from(within), dim) << "another light's inner side is forgotten";
+  EXPECT_EQ(glGetError(), GLenum(GL_NO_ERROR));
+}
+
 TEST(SurfaceRenderer, DrawsNothingWhereThereIsNothing) {
   const test::EglContext context;
   if (!context) GTEST_SKIP() << context.why();

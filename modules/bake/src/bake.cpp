@@ -12,21 +12,23 @@
 #include <variant>
 
 #include "bake_parts.h"
+#include "both_sides.h"
 #include "light_by_need.h"
 #include "resampling_choice.h"
 
 namespace isolux {
 namespace {
 
-BakeResult bake_paths(const Volume& volume, const Scene& scene, const BakeSettings& settings, const Stages& stages,
-                      const Run& run) {
+constexpr double kLeastSeconds = 1e-3;  ///< where a time is over before any ray
+
+BakeResult bake_paths(const Volume& volume, const Scene& scene, const BakeSettings& settings, FoundSites found,
+                      const Stages& stages, const Run& run) {
   const auto resampler = stages.resamplers.create(settings.resampler.name, settings.resampler.settings);
   const auto tracer = stages.tracers.create(settings.tracer.name, settings.tracer.settings);
   const Lattice texels = texel_lattice(volume.lattice(), settings);
-  BakeResult result;
-  Sites sites = sample_sites(volume, scene.outer, settings, texels, stages, run, result);
+  BakeResult result = std::move(found.begun);
   const Stopwatch watch;
-  const TraceResult traced = tracer->trace(volume, scene, std::move(sites), settings.trace, run);
+  const TraceResult traced = tracer->trace(volume, scene, std::move(found.sites), settings.trace, run);
   result.seconds["trace"] = watch.seconds();
   result.counters = traced.counters;
   result.least_rays = result.most_rays = std::uint32_t(settings.trace.rays);
@@ -42,15 +44,18 @@ bool keeps_rays(const BakeSettings& settings, const Scene& scene) {
   return has_target(settings) && settings.trace.bounces == 0 && settings.tracer.name == "wide" && !aims;
 }
 
+BakeResult bake_side(const Volume& volume, const Scene& scene, const BakeSettings& settings, FoundSites found,
+                     const Stages& stages, const Run& run);
+
 /// One number of rays for all sites, from what a small bake shows.
-BakeSettings with_rays_for_target(const Volume& volume, const Scene& scene, BakeSettings settings, const Stages& stages,
-                                  const Run& run, double& seconds) {
+BakeSettings with_rays_for_target(const Volume& volume, const Scene& scene, BakeSettings settings,
+                                  const FoundSites& found, const Stages& stages, const Run& run, double& seconds) {
   const Stopwatch watch;
   BakeSettings pilot = settings;
   pilot.target_rmse = pilot.target_seconds = 0.0;
   pilot.wants_error_grid = false;
   pilot.trace.rays = 16;
-  const BakeResult seen = bake(volume, scene, pilot, stages, run);
+  const BakeResult seen = bake_side(volume, scene, pilot, found, stages, run);
   double factor = std::numeric_limits<double>::infinity();
   if (settings.target_rmse > 0.0) factor = std::pow(seen.rmse_estimate / settings.target_rmse, 2.0);
   if (settings.target_seconds > 0.0)
@@ -59,6 +64,34 @@ BakeSettings with_rays_for_target(const Volume& volume, const Scene& scene, Bake
   settings.trace.rays = int(std::clamp(std::ceil(pilot.trace.rays * factor), double(pilot.trace.rays), 0x1p20));
   seconds = watch.seconds();
   return settings;
+}
+
+/// Lights the outer side of `scene`.
+BakeResult bake_side(const Volume& volume, const Scene& scene, const BakeSettings& settings, FoundSites found,
+                     const Stages& stages, const Run& run) {
+  if (settings.texel_sites == TexelSites::kNeeded) return bake_by_need(volume, scene, settings, stages, run);
+  if (keeps_rays(settings, scene))
+    return KeptRays(volume, scene, settings, std::move(found), stages, run).light(scene, run);
+  if (!has_target(settings)) return bake_paths(volume, scene, settings, std::move(found), stages, run);
+  double pilot_seconds = 0.0;
+  const BakeSettings chosen = with_rays_for_target(volume, scene, settings, found, stages, run, pilot_seconds);
+  BakeResult result = bake_side(volume, scene, chosen, std::move(found), stages, run);
+  result.seconds["pilot"] = pilot_seconds;
+  return result;
+}
+
+/// Both sides, one after the other: no ray goes from one to the other. A time is shared.
+BakeResult bake_both(const Volume& volume, const Scene& scene, const BakeSettings& given, FoundSites found,
+                     const Stages& stages, const Run& run) {
+  const Stopwatch watch;
+  BakeSettings settings = given;
+  settings.target_seconds = 0.5 * given.target_seconds;
+  BakeResult outer = bake_side(volume, scene_of_side(scene, LevelSetSide::kOuter), settings, found, stages, run);
+  if (given.target_seconds > 0.0)
+    settings.target_seconds = std::max(given.target_seconds - watch.seconds(), kLeastSeconds);
+  BakeResult inner = bake_side(volume, scene_of_side(scene, LevelSetSide::kInner), settings,
+                               turned_round(std::move(found)), stages, run);
+  return both_sides(std::move(outer), std::move(inner));
 }
 
 }  // namespace
@@ -90,15 +123,14 @@ BakeSettings with_defaults(BakeSettings settings, const Stages& stages) {
 
 BakeResult bake(const Volume& volume, const Scene& scene, const BakeSettings& given, const Stages& stages,
                 const Run& run) {
-  const BakeSettings settings = with_defaults(given, stages);
-  if (settings.texel_sites == TexelSites::kNeeded) return bake_by_need(volume, scene, settings, stages, run);
-  if (keeps_rays(settings, scene)) return KeptRays(volume, scene, settings, stages, run).light(scene, run);
-  if (!has_target(settings)) return bake_paths(volume, scene, settings, stages, run);
-  double pilot_seconds = 0.0;
-  const BakeSettings chosen = with_rays_for_target(volume, scene, settings, stages, run, pilot_seconds);
-  BakeResult result = bake(volume, scene, chosen, stages, run);
-  result.seconds["pilot"] = pilot_seconds;
-  return result;
+  BakeSettings settings = with_defaults(given, stages);
+  const Stopwatch watch;
+  FoundSites found;  // by need they are found when they are wanted
+  if (settings.texel_sites == TexelSites::kAll) found = find_sites(volume, scene.outer, settings, stages, run);
+  if (settings.target_seconds > 0.0)
+    settings.target_seconds = std::max(settings.target_seconds - watch.seconds(), kLeastSeconds);
+  const auto light = scene.sides == LitSides::kBoth ? bake_both : bake_side;
+  return light(volume, scene, settings, std::move(found), stages, run);
 }
 
 }  // namespace isolux

@@ -15,11 +15,6 @@ void require_lightable(const Volume& volume, const BakeSettings& settings);
 /// What a sampler is asked for, but for the number of sites a texel.
 [[nodiscard]] SiteRequest site_request(const BakeSettings& settings, const Lattice& texels, OuterSide outer);
 
-/// The sites of a bake; counts those left out in result.skipped. \throw InvalidInput if the volume is not usable or no
-/// site is found
-[[nodiscard]] Sites sample_sites(const Volume& volume, OuterSide outer, const BakeSettings& settings,
-                                 const Lattice& texels, const Stages& stages, const Run& run, BakeResult& result);
-
 /// The samples as a grid, with their error.
 void finish_bake(const Volume& volume, const SampleSet& samples, const Resampler& resampler, const Lattice& texels,
                  const BakeSettings& settings, const Run& run, BakeResult& result);

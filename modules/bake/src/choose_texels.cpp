@@ -126,6 +126,20 @@ double interpolation_error(const Reference& reference, const Readings& read) {
   return total > 0.0 ? std::sqrt(std::max(0.0, squares / total)) : 0.0;
 }
 
+/// What the side that wants more texels wants.
+TexelChoice choose_for_both(const Volume& volume, const Scene& scene, const BakeSettings& settings, double target,
+                            const Stages& stages, const Run& run) {
+  const auto choose = [&](LevelSetSide side) {
+    return choose_texels(volume, scene_of_side(scene, side), settings, target, stages, run);
+  };
+  TexelChoice both = choose(LevelSetSide::kOuter);
+  const TexelChoice inner = choose(LevelSetSide::kInner);
+  both.texels = glm::max(both.texels, inner.texels);
+  both.error = std::max(both.error, inner.error);
+  add(both.counters, inner.counters);
+  return both;
+}
+
 }  // namespace
 
 Index3 texels_by_ratio(const Lattice& volume, double ratio) {
@@ -137,6 +151,7 @@ TexelChoice choose_texels(const Volume& volume, const Scene& scene, const BakeSe
   require_usable(volume);
   if (settings.lattice == TexelLattice::kVoxels)
     throw InvalidInput("texels at the voxels: their number is the volume's and cannot be chosen");
+  if (scene.sides == LitSides::kBoth) return choose_for_both(volume, scene, settings, target, stages, run);
   const auto tracer = stages.tracers.create(settings.tracer.name, settings.tracer.settings);
   TexelChoice best{.texels = Index3(1), .error = std::numeric_limits<double>::infinity(), .counters = {}};
   const Reference reference = trace_reference(volume, scene, settings, *tracer, stages, run, best.counters);

@@ -22,15 +22,24 @@ constexpr int kMostRounds = 24;
 
 KeptRays::KeptRays(const Volume& volume, const Scene& scene, const BakeSettings& given, const Stages& stages,
                    const Run& run)
-    : volume_(volume), settings_(with_defaults(given, stages)), texels_(texel_lattice(volume.lattice(), settings_)) {
+    : KeptRays(volume, scene, with_defaults(given, stages),
+               find_sites(volume, scene.outer, with_defaults(given, stages), stages, run), stages, run) {}
+
+KeptRays::KeptRays(const Volume& volume, const Scene& scene, const BakeSettings& settings, FoundSites found,
+                   const Stages& stages, const Run& run)
+    : volume_(volume),
+      settings_(settings),
+      texels_(texel_lattice(volume.lattice(), settings_)),
+      begun_(std::move(found.begun)) {
+  if (scene.sides != LitSides::kOuter)
+    throw InvalidInput("rays are kept of one side; a scene that lights both sides is one for bake()");
   resampler_ = stages.resamplers.create(settings_.resampler.name, settings_.resampler.settings);
-  Sites sites = sample_sites(volume, scene.outer, settings_, texels_, stages, run, begun_);
   const Stopwatch watch;
   const LinkSettings request{.rays = has_target(settings_) ? kFirstRays : settings_.trace.rays,
                              .outer = scene.outer,
                              .ends = settings_.trace.bounces == 0 ? LinkEnds::kDropped : LinkEnds::kKept,
                              .texels = texels_};
-  links_ = std::make_unique<LightLinks>(volume, std::move(sites), request, run);
+  links_ = std::make_unique<LightLinks>(volume, std::move(found.sites), request, run);
   trace_seconds_ = watch.seconds();
 }
 

@@ -67,6 +67,7 @@ LightFile make_light_file(BakeResult result, const Volume& volume, const Scene& 
   if (!std::isnan(result.rmse_estimate))
     light.metadata["isolux.rmse_estimate"] = fmt::format("{:.6g}", result.rmse_estimate);
   light.grid = std::move(result.light);
+  light.inner = std::move(result.inner_light);
   return light;
 }
 
@@ -80,6 +81,7 @@ LightFile make_error_file(const BakeResult& result, const Volume& volume, const 
                    {"isolux.settings", settings_to_json(settings, run)},
                    {"isolux.volume_sha256", volume_sha256(volume)}};
   file.grid = *result.error;
+  file.inner = result.inner_error;
   return file;
 }
 

@@ -162,7 +162,7 @@ Scene parse_scene(const std::string& text, const std::string& folder, const std:
     throw InvalidInput(fmt::format("{}: not JSON at byte {}", name, error.byte));
   }
   const JsonObject object(root, name);
-  object.require_keys({"environment", "lights", "albedo", "emission", "outer"});
+  object.require_keys({"environment", "lights", "albedo", "emission", "outer", "sides"});
   Scene scene;
   if (object.has("environment"))
     scene.environment = read_environment(object.at("environment"), folder, object.place("environment"));
@@ -182,6 +182,13 @@ Scene parse_scene(const std::string& text, const std::string& folder, const std:
     }
     scene.outer = outer == "lower" ? OuterSide::kLower : OuterSide::kHigher;
   }
+  if (object.has("sides")) {
+    const std::string sides = object.text("sides");
+    if (sides != "outer" && sides != "both") {
+      throw InvalidInput(fmt::format("{}: '{}'; allowed are outer, both", object.place("sides"), sides));
+    }
+    scene.sides = sides == "both" ? LitSides::kBoth : LitSides::kOuter;
+  }
   return scene;
 }
 
@@ -197,11 +204,12 @@ Scene read_scene(const std::string& path) {
 std::string scene_to_json(const Scene& scene) {
   json lights = json::array();
   for (const auto& light : scene.lights) lights.push_back(light_to_json(light));
-  const json root{{"environment", environment_to_json(scene.environment)},
-                  {"lights", lights},
-                  {"albedo", colour_to_json(scene.albedo)},
-                  {"emission", colour_to_json(scene.emission)},
-                  {"outer", scene.outer == OuterSide::kLower ? "lower" : "higher"}};
+  json root{{"environment", environment_to_json(scene.environment)},
+            {"lights", lights},
+            {"albedo", colour_to_json(scene.albedo)},
+            {"emission", colour_to_json(scene.emission)},
+            {"outer", scene.outer == OuterSide::kLower ? "lower" : "higher"}};
+  if (scene.sides == LitSides::kBoth) root["sides"] = "both";
   return root.dump();
 }
 

@@ -124,6 +124,12 @@ Vec3f IsovalueColour::at(float isovalue) const {
   return Vec3f((1.0 - s) * Vec3(low.colour) + s * Vec3(above->colour));
 }
 
+Scene scene_of_side(Scene scene, LevelSetSide side) {
+  scene.sides = LitSides::kOuter;
+  if (side == LevelSetSide::kInner) scene.outer = opposite(scene.outer);
+  return scene;
+}
+
 bool is_grey(const Scene& scene) {
   return is_grey_environment(scene.environment) &&
          std::all_of(scene.lights.begin(), scene.lights.end(), is_grey_light) && is_grey_colour(scene.albedo) &&

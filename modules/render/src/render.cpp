@@ -42,17 +42,30 @@ class Raycaster {
   [[nodiscard]] Vec3f radiance(double x, double y) const {
     const Vec3 direction = camera_.direction(x, y);
     const Vec3 index_direction = world_to_index_ * direction;
-    const auto hit = intersector_.first_hit(eye_index_, index_direction, settings_.isovalue);
+    auto hit = intersector_.first_hit(eye_index_, index_direction, settings_.isovalue);
     if (!hit) return settings_.background;
+    const LevelSetSide seen = side_seen(hit->position, index_direction);
+    if (settings_.only && seen != *settings_.only) {
+      // Beyond it the ray is on the other side of the level set and meets it from there next.
+      const bool outer = *settings_.only == LevelSetSide::kOuter;
+      hit = intersector_.next_hit(hit->position, index_direction, settings_.isovalue,
+                                  outer ? settings_.outer : opposite(settings_.outer));
+      if (!hit) return settings_.background;
+    }
     SurfacePoint point;
     point.index = hit->position;
     point.world = field_.lattice().frame.world(hit->position);
     point.normal = field_.normal(hit->position, settings_.outer, settings_.gradient);
     point.towards_eye = -direction;
-    // The cell's own gradient says which side is seen; the smoothed normal may disagree near silhouettes.
-    const double rise = glm::dot(field_.cell_gradient(hit->position), index_direction);
-    point.outside = settings_.outer == OuterSide::kLower ? rise >= 0.0 : rise <= 0.0;
+    point.outside = settings_.only.value_or(seen) == LevelSetSide::kOuter;
     return shader_(point);
+  }
+
+  /// The cell's own gradient says which side is seen; the smoothed normal may disagree near silhouettes.
+  [[nodiscard]] LevelSetSide side_seen(const Vec3& index, const Vec3& index_direction) const {
+    const double rise = glm::dot(field_.cell_gradient(index), index_direction);
+    const bool outside = settings_.outer == OuterSide::kLower ? rise >= 0.0 : rise <= 0.0;
+    return outside ? LevelSetSide::kOuter : LevelSetSide::kInner;
   }
 
   const Camera& camera_;
@@ -94,6 +107,12 @@ Shader global_shader(LightAt light, const Vec3f& albedo) {
   return [light = std::move(light), albedo](const SurfacePoint& point) {
     if (!point.outside) return albedo * (0.1f * local_light(point));
     return albedo * light(point);
+  };
+}
+
+Shader global_shader(LightAt outer, LightAt inner, const Vec3f& albedo) {
+  return [outer = std::move(outer), inner = std::move(inner), albedo](const SurfacePoint& point) {
+    return albedo * (point.outside ? outer(point) : inner(point));
   };
 }
 

@@ -50,77 +50,158 @@ ValueRange parse_isovalues(const std::string& path, const std::string& text) {
           .high = float(parse_number(what, text.substr(colon + 1)))};
 }
 
-/// Of each texel the values of its channels, then their slopes.
-std::vector<float> interleave(const IlluminationGrid& grid) {
-  const auto channels = std::size_t(grid.channels);
-  std::vector<float> both;
-  both.reserve(2 * grid.values.size());
-  for (std::size_t at = 0; at < grid.values.size(); at += channels) {
-    both.insert(both.end(), &grid.values[at], &grid.values[at] + channels);
-    both.insert(both.end(), &grid.detail.slopes[at], &grid.detail.slopes[at] + channels);
-  }
-  return both;
+/// A light's sides, the outer one first.
+std::vector<const IlluminationGrid*> sides_of(const LightFile& light) {
+  std::vector<const IlluminationGrid*> sides{&light.grid};
+  if (light.inner) sides.push_back(&*light.inner);
+  return sides;
 }
 
-void take_apart(const std::vector<float>& both, IlluminationGrid& grid) {
-  const auto channels = std::size_t(grid.channels);
-  for (std::size_t at = 0; at < both.size(); at += 2 * channels) {
-    grid.values.insert(grid.values.end(), &both[at], &both[at] + channels);
-    grid.detail.slopes.insert(grid.detail.slopes.end(), &both[at] + channels, &both[at] + 2 * channels);
+/// Of each texel the values of a side's channels, then their slopes, then the next side's.
+std::vector<float> interleave(const std::vector<const IlluminationGrid*>& sides) {
+  const auto channels = std::size_t(sides.front()->channels);
+  std::vector<float> all;
+  all.reserve(2 * sides.size() * sides.front()->values.size());
+  for (std::size_t at = 0; at < sides.front()->values.size(); at += channels) {
+    for (const IlluminationGrid* side : sides) {
+      all.insert(all.end(), &side->values[at], &side->values[at] + channels);
+      if (side->detail.slopes.empty()) continue;
+      all.insert(all.end(), &side->detail.slopes[at], &side->detail.slopes[at] + channels);
+    }
   }
+  return all;
+}
+
+/// The numbers of one side among `stride` a texel, from `first` on.
+void take_side(const std::vector<float>& all, std::size_t first, std::size_t stride, bool sloped,
+               IlluminationGrid& grid) {
+  const auto channels = std::size_t(grid.channels);
+  grid.values.reserve(all.size() / stride * channels);
+  for (std::size_t at = first; at < all.size(); at += stride) {
+    grid.values.insert(grid.values.end(), &all[at], &all[at] + channels);
+    if (!sloped) continue;
+    grid.detail.slopes.insert(grid.detail.slopes.end(), &all[at] + channels, &all[at] + 2 * channels);
+  }
+}
+
+void require_like(const IlluminationGrid& outer, const IlluminationGrid& inner, const std::string& path) {
+  if (inner.lattice.size == outer.lattice.size && inner.channels == outer.channels &&
+      inner.values.size() == outer.values.size() && inner.detail.slopes.size() == outer.detail.slopes.size())
+    return;
+  throw InvalidInput(
+      fmt::format("{}: the light of the inner side is laid out differently than the outer side's", path));
+}
+
+/// isolux.near_field and so on; isolux.inner.near_field and so on.
+std::string detail_key(LevelSetSide side, const char* name) {
+  return fmt::format("isolux.{}{}", side == LevelSetSide::kInner ? "inner." : "", name);
+}
+
+using KeyValues = std::map<std::string, std::string>;
+
+void write_detail(const LightDetail& extra, LevelSetSide side, KeyValues& pairs) {
+  if (!extra.near_field.empty()) pairs[detail_key(side, "near_field")] = near_field_text(extra.near_field);
+  if (!extra.empty()) pairs[detail_key(side, "light_ceiling")] = fmt::format("{}", extra.ceiling);
+}
+
+void read_detail(const std::string& path, const KeyValues& pairs, LevelSetSide side, LightDetail& extra) {
+  if (const auto it = pairs.find(detail_key(side, "near_field")); it != pairs.end()) {
+    extra.near_field = parse_near_field(path, it->second);
+  }
+  if (const auto it = pairs.find(detail_key(side, "light_ceiling")); it != pairs.end()) {
+    extra.ceiling = float(parse_number(path + ": " + it->first, it->second));
+  }
+  if (const auto it = pairs.find("isolux.iso_range"); it != pairs.end()) {
+    extra.isovalues = parse_isovalues(path, it->second);
+  }
+}
+
+/// Whether isolux.sides says so.
+bool has_both_sides(const std::string& path, const KeyValues& pairs) {
+  const auto it = pairs.find("isolux.sides");
+  if (it == pairs.end() || it->second == "outer") return false;
+  if (it->second == "both") return true;
+  throw InvalidInput(fmt::format("{}: isolux.sides '{}'; allowed are outer, both", path, it->second));
+}
+
+/// What the channel axis holds.
+struct ChannelAxis {
+  std::size_t numbers = 1;  ///< a texel
+  std::size_t sides = 1;
+  std::size_t channels = 1;  ///< a side
+  bool sloped = false;
+};
+
+/// \throw InvalidInput if no light has such axes
+ChannelAxis channel_axis(const std::string& path, const detail::NrrdHeader& header) {
+  const std::size_t axes = header.axes.size();
+  ChannelAxis axis{.numbers = axes == 4 ? std::size_t(header.axes.front().size) : 1,
+                   .sides = has_both_sides(path, header.key_values) ? 2U : 1U};
+  const std::size_t a_side = axis.numbers / axis.sides;
+  const bool known = axis.numbers % axis.sides == 0 &&
+                     (a_side == 2 || a_side == 3 || a_side == 6 || (a_side == 1 && (axes == 3 || axis.sides == 2)));
+  if ((axes != 3 && axes != 4) || !known) {
+    throw InvalidInput(fmt::format("{}: a light file has 3 axes, or 4 with the first of size {}; this has {}", path,
+                                   axis.sides == 2 ? "2, 4, 6 or 12 for both sides" : "2, 3 or 6",
+                                   axes == 4 ? fmt::format("4 with {}", axis.numbers) : std::to_string(axes)));
+  }
+  axis.channels = a_side % 3 == 0 ? 3 : 1;
+  axis.sloped = a_side == 2 * axis.channels;
+  return axis;
 }
 
 }  // namespace
 
+const IlluminationGrid& light_of_side(const LightFile& light, LevelSetSide side, const std::string& path) {
+  if (side == LevelSetSide::kOuter) return light.grid;
+  if (light.inner) return *light.inner;
+  throw InvalidInput(
+      fmt::format("{}: it holds light of the outer side alone; a scene with \"sides\": \"both\" lights both", path));
+}
+
 void write_light(const LightFile& light, const std::string& path, const std::string& space,
                  const LightWriteOptions& options) {
-  const LightDetail& extra = light.grid.detail;
-  const bool sloped = !extra.slopes.empty();
+  if (light.inner) require_like(light.grid, *light.inner, path);
+  const auto sides = sides_of(light);
+  const bool sloped = !light.grid.detail.slopes.empty();
   detail::NrrdImage image{.type = ScalarType::kFloat32,
-                          .channels = light.grid.channels * (sloped ? 2 : 1),
+                          .channels = light.grid.channels * (sloped ? 2 : 1) * int(sides.size()),
                           .lattice = light.grid.lattice,
                           .space = space,
                           .key_values = light.metadata,
                           .compress = options.compress,
                           .data_file = {}};
-  if (!extra.near_field.empty()) image.key_values["isolux.near_field"] = near_field_text(extra.near_field);
-  if (!extra.empty()) image.key_values["isolux.light_ceiling"] = fmt::format("{}", extra.ceiling);
+  write_detail(light.grid.detail, LevelSetSide::kOuter, image.key_values);
+  image.key_values.erase("isolux.sides");
+  if (light.inner) {
+    write_detail(light.inner->detail, LevelSetSide::kInner, image.key_values);
+    image.key_values["isolux.sides"] = "both";
+  }
   write_atomically(path, [&](std::ostream& out) {
     detail::write_nrrd_header(out, image);
-    detail::write_nrrd_values(out, image, sloped ? interleave(light.grid) : light.grid.values);
+    detail::write_nrrd_values(out, image, sloped || light.inner ? interleave(sides) : light.grid.values);
   });
 }
 
 LightFile read_light(const std::string& path) {
   detail::NrrdHeader header = detail::read_nrrd_header(path, {});
-  const std::size_t axes = header.axes.size();
-  const auto first = axes == 4 ? header.axes.front().size : 1;
-  const bool sloped = first == 2 || first == 6;
-  if ((axes != 3 && axes != 4) || (axes == 4 && first != 3 && !sloped)) {
-    throw InvalidInput(fmt::format("{}: a light file has 3 axes, or 4 with the first of size 2, 3 or 6; this has {}",
-                                   path, axes == 4 ? fmt::format("4 with {}", first) : std::to_string(axes)));
-  }
+  const ChannelAxis axis = channel_axis(path, header);
   LightFile light;
-  light.grid.channels = first == 3 || first == 6 ? 3 : 1;
+  light.grid.channels = int(axis.channels);
   light.grid.lattice = detail::nrrd_frame(header, std::span(header.axes).last(3)).lattice;
   std::vector<float> values = detail::read_nrrd_values(header, {});
   if (!std::all_of(values.begin(), values.end(), [](float v) { return std::isfinite(v); }))
     throw InvalidInput(fmt::format("{}: a light file's values are finite; this has others", path));
-  if (sloped) {
-    take_apart(values, light.grid);
-  } else {
+  if (axis.sides == 2) light.inner = light.grid;
+  if (axis.sides == 1 && !axis.sloped) {
     light.grid.values = std::move(values);
+  } else {
+    take_side(values, 0, axis.numbers, axis.sloped, light.grid);
+    if (light.inner) take_side(values, axis.numbers / 2, axis.numbers, axis.sloped, *light.inner);
   }
   light.metadata = std::move(header.key_values);
-  if (const auto it = light.metadata.find("isolux.near_field"); it != light.metadata.end()) {
-    light.grid.detail.near_field = parse_near_field(path, it->second);
-  }
-  if (const auto it = light.metadata.find("isolux.light_ceiling"); it != light.metadata.end()) {
-    light.grid.detail.ceiling = float(parse_number(path + ": isolux.light_ceiling", it->second));
-  }
-  if (const auto it = light.metadata.find("isolux.iso_range"); it != light.metadata.end()) {
-    light.grid.detail.isovalues = parse_isovalues(path, it->second);
-  }
+  read_detail(path, light.metadata, LevelSetSide::kOuter, light.grid.detail);
+  if (light.inner) read_detail(path, light.metadata, LevelSetSide::kInner, light.inner->detail);
   return light;
 }
 

@@ -2,6 +2,8 @@
 
 #include <gmock/gmock.h>
 
+#include <cstring>
+
 namespace isolux {
 namespace {
 using testing::HasSubstr;
@@ -31,6 +33,91 @@ TEST(LightFile, RoundTripsGreyAndColour) {
       EXPECT_EQ(back.metadata, light.metadata);
     }
   }
+}
+
+/// Numbers that tell side, kind, texel and channel: i and i + .25 outside, i + .5 and i + .75 inside.
+LightFile example_of_both(int channels, bool sloped) {
+  LightFile light = example(channels);
+  for (std::size_t i = 0; i < light.grid.values.size(); ++i) light.grid.values[i] = float(i);
+  light.inner = light.grid;
+  for (float& v : light.inner->values) v += 0.5f;
+  if (!sloped) return light;
+  for (IlluminationGrid* side : {&light.grid, &*light.inner}) {
+    for (const float v : side->values) side->detail.slopes.push_back(v + 0.25f);
+    const float inside = side == &light.grid ? 0.0f : 1.0f;
+    side->detail.near_field = {{.step = 1.0f - 2.0f * inside, .mean = 0.125f + inside, .weight = Vec3f(0.1f)}};
+    side->detail.ceiling = 1.5f + inside;
+  }
+  return light;
+}
+
+TEST(LightFile, RoundTripsBothSides) {
+  const test::TemporaryFolder folder;
+  for (const int channels : {1, 3}) {
+    for (const bool sloped : {false, true}) {
+      const LightFile light = example_of_both(channels, sloped);
+      write_light(light, folder.file("l.nrrd"), "left-posterior-superior");
+      const LightFile back = read_light(folder.file("l.nrrd"));
+      ASSERT_TRUE(back.inner.has_value());
+      EXPECT_EQ(back.metadata.at("isolux.sides"), "both");
+      const auto expect_equal = [&](const IlluminationGrid& read, const IlluminationGrid& written) {
+        EXPECT_EQ(read.channels, channels);
+        EXPECT_EQ(read.values, written.values);
+        EXPECT_EQ(read.detail.slopes, written.detail.slopes);
+        EXPECT_EQ(read.detail.ceiling, written.detail.ceiling);
+        ASSERT_EQ(read.detail.near_field.size(), written.detail.near_field.size());
+        for (std::size_t t = 0; t < read.detail.near_field.size(); ++t) {
+          EXPECT_EQ(read.detail.near_field[t].step, written.detail.near_field[t].step);
+          EXPECT_EQ(read.detail.near_field[t].mean, written.detail.near_field[t].mean);
+        }
+        EXPECT_EQ(read.lattice.frame.axes, written.lattice.frame.axes);
+      };
+      expect_equal(light_of_side(back, LevelSetSide::kOuter, "l.nrrd"), light.grid);
+      expect_equal(light_of_side(back, LevelSetSide::kInner, "l.nrrd"), *light.inner);
+    }
+  }
+}
+
+// The first texel of a file: outer values, outer slopes, inner values, inner slopes, so that what a program takes for
+// the first channels is the outer side's light.
+TEST(LightFile, HasTheInnerSideBehindTheOuter) {
+  const test::TemporaryFolder folder;
+  const auto first_texel = [&](int channels, bool sloped, const char* sizes) {
+    write_light(example_of_both(channels, sloped), folder.file("l.nrrd"), "left-posterior-superior");
+    const std::string text = test::read_file(folder.file("l.nrrd"));
+    EXPECT_THAT(text, HasSubstr(sizes));
+    EXPECT_THAT(text, HasSubstr("\nkinds: vector domain domain domain\n"));
+    EXPECT_THAT(text, HasSubstr("\nisolux.sides:=both\n"));
+    std::vector<float> numbers(std::size_t(channels) * (sloped ? 4 : 2));
+    std::memcpy(numbers.data(), text.data() + text.find("\n\n") + 2, numbers.size() * sizeof(float));
+    return numbers;
+  };
+  EXPECT_EQ(first_texel(1, false, "\nsizes: 2 4 3 2\n"), (std::vector<float>{0, 0.5f}));
+  EXPECT_EQ(first_texel(1, true, "\nsizes: 4 4 3 2\n"), (std::vector<float>{0, 0.25f, 0.5f, 0.75f}));
+  EXPECT_EQ(first_texel(3, false, "\nsizes: 6 4 3 2\n"), (std::vector<float>{0, 1, 2, 0.5f, 1.5f, 2.5f}));
+  EXPECT_EQ(first_texel(3, true, "\nsizes: 12 4 3 2\n"),
+            (std::vector<float>{0, 1, 2, 0.25f, 1.25f, 2.25f, 0.5f, 1.5f, 2.5f, 0.75f, 1.75f, 2.75f}));
+}
+
+TEST(LightFile, TellsSidesFromSlopesByItsKey) {
+  const test::TemporaryFolder folder;
+  const auto read = [&](const std::string& pair, const std::string& sizes, const std::string& data) {
+    return read_light(folder.write(
+        "l.nrrd", "NRRD0005\ntype: uint8\ndimension: 4\nsizes: " + sizes + "\nencoding: raw\n" + pair + "\n" + data));
+  };
+  const LightFile sloped = read("", "2 1 1 1", "\1\2");
+  EXPECT_FALSE(sloped.inner.has_value());
+  EXPECT_EQ(sloped.grid.detail.slopes, std::vector<float>{2});
+  EXPECT_THAT(test::error_of([&] { (void)light_of_side(sloped, LevelSetSide::kInner, "l.nrrd"); }),
+              HasSubstr("l.nrrd: it holds light of the outer side alone"));
+  const LightFile both = read("isolux.sides:=both\n", "2 1 1 1", "\1\2");
+  ASSERT_TRUE(both.inner.has_value());
+  EXPECT_TRUE(both.grid.detail.slopes.empty());
+  EXPECT_EQ(both.inner->values, std::vector<float>{2});
+  EXPECT_THAT(test::error_of([&] { (void)read("isolux.sides:=both\n", "3 1 1 1", "abc"); }),
+              HasSubstr("2, 4, 6 or 12 for both sides"));
+  EXPECT_THAT(test::error_of([&] { (void)read("isolux.sides:=left\n", "2 1 1 1", "ab"); }),
+              HasSubstr("allowed are outer, both"));
 }
 
 TEST(LightFile, HasTheLayoutThatOtherReadersNeed) {

@@ -61,9 +61,12 @@ void Viewer::start(Document document) {
 }
 
 void Viewer::take_light(std::shared_ptr<const LightFile> light) {
-  renderer_->set_light(light->grid);
-  shown_.exact = false;
   outer_ = settings_.outer.value_or(light_outer(*light));
+  // Both sides keep their own light where the user calls the other side the outer one.
+  const bool turned = light->inner && outer_ != light_outer(*light);
+  renderer_->set_light(turned ? *light->inner : light->grid);
+  if (light->inner) renderer_->set_inner_light(turned ? light->grid : *light->inner);
+  shown_.exact = false;
   document_.light = std::move(light);
   if (layout_ == Layout::kLocal) layout_ = Layout::kGlobal;
 }

@@ -53,8 +53,11 @@ void SurfaceRenderer::set_surface(const IndexedMesh& mesh, float isovalue) {
 
 void SurfaceRenderer::set_light(const IlluminationGrid& light) {
   light_.emplace(*volume_, light);
+  inner_light_.reset();
   set_exact_light({});
 }
+
+void SurfaceRenderer::set_inner_light(const IlluminationGrid& light) { inner_light_.emplace(*volume_, light); }
 
 void SurfaceRenderer::set_exact_light(std::span<const Vec3f> radiance) {
   has_exact_ = !radiance.empty();
@@ -65,6 +68,23 @@ void SurfaceRenderer::set_exact_light(std::span<const Vec3f> radiance) {
   } else {
     glDisableVertexAttribArray(kExactAttribute);
   }
+}
+
+/// All triangles; where both sides have light, front faces and then back faces with theirs.
+void SurfaceRenderer::draw_faces(bool global) const {
+  const bool both = global && inner_light_;
+  glUniform1i(program_.uniform("inner_light"), 0);
+  if (both) {
+    glEnable(GL_CULL_FACE);
+    glCullFace(GL_BACK);
+  }
+  glDrawElements(GL_TRIANGLES, index_count_, GL_UNSIGNED_INT, nullptr);
+  if (!both) return;
+  inner_light_->bind(program_);
+  glUniform1i(program_.uniform("inner_light"), 1);
+  glCullFace(GL_FRONT);
+  glDrawElements(GL_TRIANGLES, index_count_, GL_UNSIGNED_INT, nullptr);
+  glDisable(GL_CULL_FACE);
 }
 
 void SurfaceRenderer::draw(const SurfaceView& view) const {
@@ -99,7 +119,7 @@ void SurfaceRenderer::draw(const SurfaceView& view) const {
     glEnable(GL_POLYGON_OFFSET_FILL);
     glPolygonOffset(1.0f, 1.0f);
   }
-  glDrawElements(GL_TRIANGLES, index_count_, GL_UNSIGNED_INT, nullptr);
+  draw_faces(global);
   if (!triangles) return;
   glDisable(GL_POLYGON_OFFSET_FILL);
   glUniform1i(program_.uniform("flat_colour"), 1);

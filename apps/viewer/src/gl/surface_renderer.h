@@ -35,6 +35,8 @@ class SurfaceRenderer {
   void set_surface(const IndexedMesh& mesh, float isovalue);
   /// \throw GlError, InvalidInput as LightTextures
   void set_light(const IlluminationGrid& light);
+  /// Light of the inner side, seen on back faces, until another light is set. \pre set_light() \throw as set_light()
+  void set_inner_light(const IlluminationGrid& light);
   /// e at the vertices of the surface, until another surface or light is set. \pre as many as vertices
   /// \throw GlError if OpenGL has no memory for it
   void set_exact_light(std::span<const Vec3f> radiance);
@@ -43,6 +45,8 @@ class SurfaceRenderer {
   void draw(const SurfaceView& view) const;
 
  private:
+  void draw_faces(bool global) const;
+
   std::shared_ptr<const Volume> volume_;
   Vec3f centre_;
   double radius_ = 0.0;
@@ -56,6 +60,7 @@ class SurfaceRenderer {
   float isovalue_ = 0.0f;
   bool has_exact_ = false;
   std::optional<LightTextures> light_;
+  std::optional<LightTextures> inner_light_;
 };
 
 }  // namespace isolux::viewer

@@ -10,6 +10,7 @@ uniform vec3 albedo;
 uniform float exposure;
 uniform bool global_light;
 uniform bool exact_light;  // traced at the vertices, instead of read from the texture
+uniform bool inner_light;  // back faces have light of their own, which read_light() gives
 uniform float isovalue;
 uniform bool flat_colour;  // for lines
 uniform vec3 line_colour;
@@ -40,6 +41,8 @@ void main() {
     radiance = albedo * local_light(gl_FrontFacing ? n : -n);
   } else if (gl_FrontFacing) {
     radiance = albedo * (exact_light ? exact : read_light(place, isovalue));
+  } else if (inner_light) {
+    radiance = albedo * read_light(place, isovalue);
   } else {
     radiance = albedo * 0.1 * local_light(-n);  // the inner side has no light of its own
   }

@@ -3,6 +3,7 @@
 
 #include <isolux/bake/bake.h>
 #include <isolux/bake/choose_texels.h>
+#include <isolux/bake/find_sites.h>
 #include <isolux/bake/kept_rays.h>
 #include <isolux/bake/light_metadata.h>
 #include <isolux/bake/light_points.h>

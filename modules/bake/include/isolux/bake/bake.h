@@ -6,6 +6,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace isolux {
 
@@ -59,9 +60,20 @@ struct BakeSettings {
   bool wants_error_grid = false;  ///< fill BakeResult::error
 };
 
+/// What lighting one side took, where both were lit.
+struct SideFigures {
+  std::size_t sites = 0;
+  std::uint64_t rays = 0;
+  double rmse_estimate = 0.0;
+};
+
+/// Of a bake of both sides counts, seconds and the estimated error are those of both together.
 struct BakeResult {
-  IlluminationGrid light;
-  std::optional<IlluminationGrid> error;  ///< estimated standard error of e at the texels, one channel
+  IlluminationGrid light;                       ///< of the outer side
+  std::optional<IlluminationGrid> error;        ///< estimated standard error of e at the texels, one channel
+  std::optional<IlluminationGrid> inner_light;  ///< of the inner side, if Scene::sides asks for it
+  std::optional<IlluminationGrid> inner_error;
+  std::vector<SideFigures> sides;  ///< the outer and the inner one; empty if one side was lit
   TraceCounters counters;
   std::size_t sites = 0;
   int sweeps = 0;                ///< of BounceMethod::kIterated
@@ -84,9 +96,10 @@ struct BakeResult {
 /// sites and Shepard's interpolation over a cell grid; the default tracer.
 [[nodiscard]] BakeSettings with_defaults(BakeSettings settings, const Stages& stages);
 
-/// Lights all level sets of a volume at once, with_defaults(). The same bits for any number of threads.
-/// \throw InvalidInput if the volume is not usable, is constant, no site is found, or a backend or option is unknown;
-/// Cancelled.
+/// Lights all level sets of a volume at once, with_defaults(). The same bits for any number of threads. Where
+/// scene.sides is kBoth, each side's light is bit by bit that of a bake of scene_of_side(); sites are found once, a
+/// time is shared. \throw InvalidInput if the volume is not usable, is constant, no site is found, or a backend or
+/// option is unknown; Cancelled.
 [[nodiscard]] BakeResult bake(const Volume& volume, const Scene& scene, const BakeSettings& settings,
                               const Stages& stages, const Run& run);
 

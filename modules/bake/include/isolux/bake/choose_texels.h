@@ -15,7 +15,8 @@ struct TexelChoice {
 /// are, those that are least wrong. Measured, not guessed: at a thousand random points of random level sets (of
 /// settings.isovalues, where there are any) e is traced there and at the eight texels around; rays' noise is taken out
 /// of the difference. Of settings the isovalues, the tracer and trace count, with at most 64 rays a texel. Other
-/// resamplers than `direct` can be less wrong. Cost: half a million rays a size tried. The same for any number of
+/// resamplers than `direct` can be less wrong. For scenes of both sides the one that wants more texels counts. Cost:
+/// half a million rays a size and side tried. The same for any number of
 /// threads. \throw as bake()
 [[nodiscard]] TexelChoice choose_texels(const Volume& volume, const Scene& scene, const BakeSettings& settings,
                                         double target, const Stages& stages, const Run& run);

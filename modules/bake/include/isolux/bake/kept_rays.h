@@ -1,6 +1,6 @@
 #pragma once
 
-#include <isolux/bake/bake.h>
+#include <isolux/bake/find_sites.h>
 #include <isolux/core/stopwatch.h>
 #include <isolux/raytrace_flat/light_links.h>
 
@@ -15,14 +15,17 @@ namespace isolux {
 class KeptRays {
  public:
   /// Traces settings.trace.rays a site, or a first few where settings name an error or a time. Of the scene only the
-  /// outer side counts. \pre the volume outlives this \throw as bake()
+  /// outer side counts. \pre the volume outlives this \throw as bake(); InvalidInput for scenes of both sides
   KeptRays(const Volume& volume, const Scene& scene, const BakeSettings& settings, const Stages& stages,
            const Run& run);
+  /// The same from sites that are found. \pre with_defaults(settings)
+  KeptRays(const Volume& volume, const Scene& scene, const BakeSettings& settings, FoundSites found,
+           const Stages& stages, const Run& run);
 
   /// The light of a scene. Rays are traced only for light sources, and where settings.target_rmse or
-  /// settings.target_seconds (counted from the construction) want more of them than there are. A second call starts
-  /// from the first one's light. BakeResult::counters are those of all rays so far. \throw as bake(); InvalidInput if
-  /// the scene's outer side is another one
+  /// settings.target_seconds (counted from when sites were found) want more of them than there are. A second call
+  /// starts from the first one's light. BakeResult::counters are those of all rays so far. \throw as bake();
+  /// InvalidInput if the scene's outer side is another one
   [[nodiscard]] BakeResult light(const Scene& scene, const Run& run);
 
   [[nodiscard]] std::uint64_t rays() const { return links_->counters().rays; }

@@ -9,6 +9,14 @@ namespace isolux {
 /// Which side of a level set is the outside, the side that is lit: that of lower or of higher values.
 enum class OuterSide : std::uint8_t { kLower, kHigher };
 
+[[nodiscard]] constexpr OuterSide opposite(OuterSide side) {
+  return side == OuterSide::kLower ? OuterSide::kHigher : OuterSide::kLower;
+}
+
+/// One of the two sides of a level set. The inner side is the outer one of the same level set with OuterSide turned
+/// round: its normal is the other way, and light reaches it through the inside.
+enum class LevelSetSide : std::uint8_t { kOuter, kInner };
+
 /// Which gradient gives the shading normal.
 enum class GradientKind : std::uint8_t {
   kCentralDifferences,  ///< trilinear interpolation of central differences at the voxels (one-sided on the faces);

@@ -3,6 +3,7 @@
 #include <isolux/core/field.h>
 #include <isolux/core/vec.h>
 
+#include <cstdint>
 #include <variant>
 #include <vector>
 
@@ -69,6 +70,9 @@ struct IsovalueColour {
   [[nodiscard]] Vec3f at(float isovalue) const;
 };
 
+/// Which sides of the level sets a bake lights.
+enum class LitSides : std::uint8_t { kOuter, kBoth };
+
 /// What lights the level sets and how they reflect. Lengths in world units.
 struct Scene {
   Environment environment{UniformEnvironment{}};
@@ -76,7 +80,11 @@ struct Scene {
   IsovalueColour albedo{{{0.0f, Vec3f(0.8f)}}};
   IsovalueColour emission{{{0.0f, Vec3f(0.0f)}}};
   OuterSide outer = OuterSide::kLower;
+  LitSides sides = LitSides::kOuter;  ///< of bake() alone: tracers, links and points take the outer side
 };
+
+/// The scene that lights one side of these level sets as its outer side.
+[[nodiscard]] Scene scene_of_side(Scene scene, LevelSetSide side);
 
 /// True if every colour of the scene is grey: then one channel is enough.
 [[nodiscard]] bool is_grey(const Scene& scene);

@@ -7,6 +7,7 @@
 #include <isolux/render/image.h>
 
 #include <functional>
+#include <optional>
 
 namespace isolux {
 
@@ -29,7 +30,8 @@ struct RenderSettings {
   float isovalue = 0.0f;
   OuterSide outer = OuterSide::kLower;
   GradientKind gradient = GradientKind::kCentralDifferences;
-  Vec3f background{0.2f};  ///< linear radiance
+  Vec3f background{0.2f};              ///< linear radiance
+  std::optional<LevelSetSide> only{};  ///< shown alone; the camera looks through the other side
 };
 
 /// Casts rays at the level set {f = isovalue} of the trilinear field itself, not at a mesh of it. The same bits for any
@@ -43,6 +45,8 @@ using LightAt = std::function<Vec3f(const SurfacePoint&)>;
 /// The baked light on a diffuse surface: albedo times e. The inner side, which has no light of its own, is drawn in a
 /// dim local shade.
 [[nodiscard]] Shader global_shader(LightAt light, const Vec3f& albedo);
+/// The same with light of both sides, each where the camera sees it.
+[[nodiscard]] Shader global_shader(LightAt outer, LightAt inner, const Vec3f& albedo);
 
 /// What graphics hardware shows without global light: a headlight and a hemisphere of sky, no shadows.
 [[nodiscard]] Shader local_shader(const Vec3f& albedo);
