@@ -171,8 +171,7 @@ void add_bake_command(CLI::App& program, Session& session) {
       ->type_name("TARGET");
   command
       .add_option("--sites", options->sites,
-                  "texels to trace: all (default), or need: with --rmse and --bounces 0, few of them, the others being "
-                  "predicted")
+                  "texels to trace: all (default), or need: with --rmse few of them, the others being predicted")
       ->check(CLI::IsMember({"all", "need"}));
   command.add_option("--time", options->time, "seconds to spend on rays and bounces; with --rmse: at most")
       ->check(CLI::PositiveNumber)

@@ -1,8 +1,9 @@
 // How long does it take to light all level sets of a volume to an error of .02 (uniform environment, no bounces, one
 // texel a cell), and how long does Embree take to light the vertices of ONE isosurface of it to the same error? Axes:
-// volume, method. Counters: the error reached (two results with independent random numbers), rays, sites. Embree gets
-// the fewest rays, a power of two of a low-discrepancy sequence for every vertex, that reach the error; its tree is
-// built beforehand. One thread. ISOLUX_STRESS adds 256^3.
+// volume, method (every texel, texels by need, those with all bounces at albedo .8). Counters: the error reached (of
+// Embree by two results with independent random numbers), rays, sites. Embree gets the fewest rays, a power of two of a
+// low-discrepancy sequence for every vertex, that reach the error; its tree is built beforehand. One thread.
+// ISOLUX_STRESS adds 256^3, ISOLUX_DATA real volumes.
 #include <benchmark/benchmark.h>
 #include <isolux/bake.h>
 #include <isolux/core/stopwatch.h>
@@ -37,7 +38,14 @@ struct Case {
 
 std::vector<Case> cases() {
   std::vector<Case> all = {{"gyroid_64", "gen:gyroid:64", 0.1f}, {"gyroid_128", "gen:gyroid:128", 0.1f}};
-  if (std::getenv("ISOLUX_STRESS") != nullptr) all.push_back({"gyroid_256", "gen:gyroid:256", 0.1f});
+  if (std::getenv("ISOLUX_STRESS") != nullptr) {
+    all.push_back({"gyroid_256", "gen:gyroid:256", 0.1f});
+    all.push_back({"marschner_lobb_256", "gen:marschner-lobb:256", 0.5f});
+    if (const char* folder = std::getenv("ISOLUX_DATA")) {
+      all.push_back({"bonsai", std::string(folder) + "/bonsai.nrrd", 40.0f});
+      all.push_back({"engine", std::string(folder) + "/engine.nrrd", 110.0f});
+    }
+  }
   return all;
 }
 
@@ -47,10 +55,11 @@ Run one_thread() {
   return run;
 }
 
-void light_all_level_sets(benchmark::State& state, const Case& test) {
+void light_all_level_sets(benchmark::State& state, const Case& test, TexelSites texel_sites, int bounces) {
   const Volume volume = read_volume(test.source);
   BakeSettings settings;
-  settings.trace.bounces = 0;
+  settings.trace.bounces = bounces;
+  settings.texel_sites = texel_sites;
   settings.target_rmse = kError;
   BakeResult result;
   for (auto _ : state) result = bake(volume, Scene{}, settings, builtin_stages(), one_thread());
@@ -172,9 +181,15 @@ void light_one_isosurface(benchmark::State& state, const Case& test) {
 
 const bool kRegistered = [] {
   for (const Case& test : cases()) {
-    benchmark::RegisterBenchmark(("all_level_sets/" + test.name).c_str(), light_all_level_sets, test)
-        ->Unit(benchmark::kSecond)
-        ->Iterations(1);
+    const auto add = [&](const char* name, TexelSites texel_sites, int bounces) {
+      benchmark::RegisterBenchmark((std::string(name) + "/" + test.name).c_str(), light_all_level_sets, test,
+                                   texel_sites, bounces)
+          ->Unit(benchmark::kSecond)
+          ->Iterations(1);
+    };
+    add("every_texel", TexelSites::kAll, 0);
+    add("by_need", TexelSites::kNeeded, 0);
+    add("by_need_all_bounces", TexelSites::kNeeded, kAllBounces);
 #if defined(ISOLUX_BENCH_EMBREE)
     benchmark::RegisterBenchmark(("one_isosurface_embree/" + test.name).c_str(), light_one_isosurface, test)
         ->Unit(benchmark::kSecond)

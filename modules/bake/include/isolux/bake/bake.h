@@ -35,7 +35,8 @@ enum class BounceMethod {
 enum class TexelSites {
   kAll,    ///< every one
   kNeeded  ///< few, the others being predicted from them, until target_rmse is reached (docs/need.md); not with a time,
-           ///< bounces, light sources, an image as environment, other tracers than wide, other resamplers than direct
+           ///< bounces by paths, light sources, an image as environment, other tracers than wide, other resamplers than
+           ///< direct
 };
 
 struct BakeSettings {
@@ -78,7 +79,8 @@ struct BakeResult {
   std::size_t sites = 0;
   int sweeps = 0;                ///< of BounceMethod::kIterated
   std::size_t unlit_texels = 0;  ///< filled from their lit neighbours
-  /// Root mean squared standard error of e over the sites, or error at texels held out (TexelSites::kNeeded); NaN if
+  /// Root mean squared standard error of e over the sites, or error at texels held out, biases included
+  /// (TexelSites::kNeeded); NaN if
   /// one ray a site says nothing of it.
   double rmse_estimate = 0.0;
   std::uint32_t least_rays = 0;  ///< a site
