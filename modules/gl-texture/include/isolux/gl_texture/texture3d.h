@@ -3,15 +3,18 @@
 #include <isolux/core/vec.h>
 #include <isolux/gl_texture/texture_mapping.h>
 
+#include <cstddef>
+
 namespace isolux {
 
-/// An OpenGL 3D texture, linear, clamped to its edge. Owns the name; moves, does not copy. Made, used and destroyed
+/// An OpenGL 3D texture, clamped to its edge. Owns the name; moves, does not copy. Made, used and destroyed
 /// with the same context current.
 class Texture3D {
  public:
   Texture3D() = default;
   /// Takes over the texture called `name`.
-  Texture3D(unsigned int name, Index3 size, int channels, const TextureMapping& mapping, double gain = 1.0);
+  Texture3D(unsigned int name, Index3 size, int channels, const TextureMapping& mapping, double gain = 1.0,
+            std::size_t bytes = 0);
   Texture3D(Texture3D&& other) noexcept;
   Texture3D& operator=(Texture3D&& other) noexcept;
   Texture3D(const Texture3D&) = delete;
@@ -28,6 +31,8 @@ class Texture3D {
   [[nodiscard]] Vec3 offset() const { return mapping_.offset; }
   /// e = gain * what the shader reads: 1 unless the light goes beyond what the format can hold.
   [[nodiscard]] double gain() const { return gain_; }
+  /// What its texels take, drivers' padding aside.
+  [[nodiscard]] std::size_t bytes() const { return bytes_; }
 
  private:
   unsigned int name_ = 0;
@@ -35,6 +40,7 @@ class Texture3D {
   int channels_ = 0;
   TextureMapping mapping_;
   double gain_ = 1.0;
+  std::size_t bytes_ = 0;
 };
 
 }  // namespace isolux
