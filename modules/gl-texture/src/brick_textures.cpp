@@ -64,7 +64,7 @@ BrickTextures upload_bricks(const LightBricks& bricks, TexelFormat format) {
   });
   const Index3 size = atlas * LightBricks::kTexels;
   BrickTextures result;
-  result.pages = upload_integers(bricks.pages, entries);
+  result.pages = upload_packed(bricks.pages, entries);
   result.values = upload_texels(size, bricks.channels, arranged(bricks, bricks.values, atlas), format, {});
   if (!bricks.slopes.empty()) {
     result.slopes = upload_texels(size, bricks.channels, arranged(bricks, bricks.slopes, atlas), format, {});

@@ -131,10 +131,10 @@ Texture3D upload_texels(Index3 size, int channels, std::span<const float> values
   return Texture3D(name, size, channels, mapping, gain, texels(size) * texel.bytes);
 }
 
-Texture3D upload_integers(Index3 size, std::span<const std::uint32_t> values) {
-  const GlTexel texel{GL_R32UI, GL_RED_INTEGER, GL_UNSIGNED_INT, GL_NEAREST, 4};
+Texture3D upload_packed(Index3 size, std::span<const std::uint32_t> values) {
+  const GlTexel texel{GL_RGB10_A2, GL_RGBA, GL_UNSIGNED_INT_2_10_10_10_REV, GL_NEAREST, 4};
   const GLuint name = upload(size, texel, values.data());
-  return Texture3D(name, size, 1, {}, 1.0, texels(size) * texel.bytes);
+  return Texture3D(name, size, 4, {}, 1.0, texels(size) * texel.bytes);
 }
 
 }  // namespace isolux

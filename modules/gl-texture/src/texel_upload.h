@@ -12,7 +12,8 @@ namespace isolux {
 [[nodiscard]] Texture3D upload_texels(Index3 size, int channels, std::span<const float> values, TexelFormat format,
                                       const TextureMapping& mapping);
 
-/// A new 3D texture of one unsigned integer a texel, to be fetched. \throw as above
-[[nodiscard]] Texture3D upload_integers(Index3 size, std::span<const std::uint32_t> values);
+/// A new unfiltered 3D texture of 10, 10, 10 and 2 bits a texel, red in the lowest, that a shader reads as 0 to 1.
+/// \throw as above
+[[nodiscard]] Texture3D upload_packed(Index3 size, std::span<const std::uint32_t> values);
 
 }  // namespace isolux

@@ -103,9 +103,9 @@ TEST_P(Uploader, ReproducesALinearRampAtAnyRatioOnBothLattices) {
     }
     const std::vector<Vec3f> read = sampler.read(texture, places);
     // Hardware filters with weights of 8 bits, rounded or cut off: 1/256 of a texel step on each axis, the largest step
-    // being 3/6 over the number of texels; and float rounding of the coordinate.
+    // being 3/6 over the number of cells between texels; and float rounding of the coordinate.
     double filter = 1e-6;
-    for (int a = 0; a < 3; ++a) filter += 0.5 / texels.size[a] / 256.0;
+    for (int a = 0; a < 3; ++a) filter += 0.5 / (texels.size[a] - 1) / 256.0;
     for (std::size_t i = 0; i < places.size(); ++i)
       for (int c = 0; c < channels(); ++c) ASSERT_NEAR(read[i][c], ramp(Vec3(places[i]), c), filter + reading());
   }

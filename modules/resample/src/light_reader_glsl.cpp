@@ -33,8 +33,9 @@ uniform vec3 light_scale;           // texture coordinate of V and S = scale * p
 uniform vec3 light_offset;
 uniform sampler3D light_slopes;     // S, likewise
 uniform float light_slope_gain;
-uniform usampler3D light_pages;
-uniform ivec3 light_texels;         // of the whole light
+uniform sampler3D light_pages;      // where in the atlas a brick is, in 1/1023; alpha is 0 where there is none
+uniform vec3 light_texels;          // of the whole light
+uniform vec3 light_page_count;
 uniform vec3 atlas_texels;
 uniform float reference_isovalue;   // h0
 uniform float light_ceiling;
@@ -45,14 +46,12 @@ uniform vec3 near_field_weight[near_field_room];
 
 vec3 near_field(vec3 index, float isovalue, vec3 gradient) {
   vec3 e = vec3(0.0);
-  float steepness = length(gradient);
+  float square = dot(gradient, gradient);
+  float flatness = square > 0.0 ? inversesqrt(square) : 0.0;
+  vec3 ahead = index_from_world * (gradient * (-mean_spacing * flatness));
   for (int t = 0; t < near_field_terms; ++t) {
-    float reach = near_field_step[t] * mean_spacing;
-    float openness = 0.0;
-    if (steepness > 0.0) {
-      vec3 ahead = index - index_from_world * (gradient * (reach / steepness));
-      openness = clamp((isovalue - volume_at(ahead)) / (steepness * reach), -1.0, 1.0);
-    }
+    float fall = isovalue - volume_at(index + near_field_step[t] * ahead);
+    float openness = clamp(fall * (flatness / (near_field_step[t] * mean_spacing)), -1.0, 1.0);
     e += near_field_weight[t] * (openness - near_field_mean[t]);
   }
   return e;
@@ -60,12 +59,11 @@ vec3 near_field(vec3 index, float isovalue, vec3 gradient) {
 
 // From a coordinate in the whole light to one in the atlas; false where there is no brick.
 bool find_brick(inout vec3 coordinate) {
-  vec3 texel = clamp(coordinate * vec3(light_texels) - 0.5, vec3(0.0), vec3(light_texels - 1));
-  ivec3 page = min(ivec3(texel), max(light_texels - 2, 0)) / 4;
-  uint entry = texelFetch(light_pages, page, 0).r;
-  vec3 brick = vec3(uvec3(entry, entry >> 10u, entry >> 20u) & 1023u);
-  coordinate = (5.0 * brick + (texel - vec3(4 * page)) + 0.5) / atlas_texels;
-  return entry != 0u;
+  vec3 texel = clamp(coordinate * light_texels - 0.5, vec3(0.0), light_texels - 1.0);
+  vec3 page = floor(0.25 * min(texel, max(light_texels - 2.0, 0.0)));
+  vec4 brick = texture(light_pages, (page + 0.5) / light_page_count);
+  coordinate = (5.0 * 1023.0 * brick.xyz + (texel - 4.0 * page) + 0.5) / atlas_texels;
+  return brick.a > 0.0;
 }
 
 vec3 read_light(vec3 place, float isovalue, vec3 gradient) {

@@ -96,7 +96,8 @@ void LightTextures::bind_volume(const ShaderProgram& program) const {
 void LightTextures::bind(const ShaderProgram& program) const {
   if (pages_) {
     bind_texture(program, 3, "light_pages", *pages_);
-    glUniform3i(program.uniform("light_texels"), texels_.x, texels_.y, texels_.z);
+    glUniform3fv(program.uniform("light_texels"), 1, glm::value_ptr(texels_));
+    glUniform3fv(program.uniform("light_page_count"), 1, glm::value_ptr(Vec3f(pages_->size())));
     glUniform3fv(program.uniform("atlas_texels"), 1, glm::value_ptr(Vec3f(offsets_.size())));
   }
   if (values_) bind_volume(program);

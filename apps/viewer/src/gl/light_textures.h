@@ -42,7 +42,7 @@ class LightTextures {
 
   Lattice volume_;
   TextureMapping mapping_;
-  Index3 texels_;
+  Vec3f texels_;
   Texture3D offsets_;
   std::optional<Texture3D> slopes_;
   std::optional<Texture3D> pages_;   ///< with them the two above are atlases of bricks

@@ -24,7 +24,7 @@ class Texture3D {
   /// 0 for none.
   [[nodiscard]] unsigned int name() const { return name_; }
   [[nodiscard]] Index3 size() const { return size_; }
-  /// 1 or 3; a shader reads red, green and blue of both, grey three times.
+  /// 1 or 3, of which a shader reads red, green and blue, grey three times; 4 of a page table.
   [[nodiscard]] int channels() const { return channels_; }
   /// Texture coordinate = scale * place + offset, see TextureMapping.
   [[nodiscard]] Vec3 scale() const { return mapping_.scale; }
