@@ -114,6 +114,30 @@ TEST_F(IsoluxView, DrawsLocalAndGlobalLightAndLeaves) {
   EXPECT_NE(both.rgb, global.rgb);
 }
 
+TEST_F(IsoluxView, DrawsLocalLightWhereTheLightIsOfOtherIsovalues) {
+  if (!has_xvfb()) GTEST_SKIP() << "xvfb-run or xauth is not installed";
+  const Volume volume = read_volume("gen:sphere:48");
+  LightFile light;
+  light.grid = IlluminationGrid(cell_lattice(volume.lattice()), 1);
+  std::fill(light.grid.values.begin(), light.grid.values.end(), 1.0f);
+  light.grid.detail.isovalues = ValueRange{.low = -0.41f, .high = -0.39f};
+  light.metadata["isolux.volume_sha256"] = volume_sha256(volume);
+  light.metadata["isolux.iso_range"] = "-0.41:-0.39";
+  write_light(light, path("light.nrrd"), volume.space);
+  const auto draw = [&](const std::string& name, const std::string& arguments) {
+    EXPECT_EQ(run_with_display("gen:sphere:48 --size 200x200 --light " + path("light.nrrd") + " --screenshot " +
+                               path(name) + " " + arguments),
+              0)
+        << said();
+    return picture(name).rgb;
+  };
+  const auto inside = draw("inside.png", "");  // where it is lit, not at Otsu's threshold
+  ASSERT_EQ(inside.size(), 200u * 200u * 3u);
+  EXPECT_NEAR(inside[(100 * 200 + 100) * 3], 231, 1) << "albedo .8 of 1, as an sRGB code";
+  EXPECT_EQ(draw("inside2.png", "--iso -0.4"), inside);
+  EXPECT_EQ(draw("outside.png", "--iso -0.2"), draw("local.png", "--iso -0.2 --mode local"));
+}
+
 TEST_F(IsoluxView, TracesExactLightAtTheVertices) {
   if (!has_xvfb()) GTEST_SKIP() << "xvfb-run or xauth is not installed";
   // A white sky lights the outside of a ball everywhere alike; the headlight of local light would not.

@@ -102,10 +102,10 @@ TEST_P(Uploader, ReproducesALinearRampAtAnyRatioOnBothLattices) {
       places.push_back(place);
     }
     const std::vector<Vec3f> read = sampler.read(texture, places);
-    // Hardware filters with weights of 8 bits: half a 1/256 of a texel step on each axis, the largest step being 3/6
-    // over the number of texels; and float rounding of the coordinate.
+    // Hardware filters with weights of 8 bits, rounded or cut off: 1/256 of a texel step on each axis, the largest step
+    // being 3/6 over the number of cells between texels; and float rounding of the coordinate.
     double filter = 1e-6;
-    for (int a = 0; a < 3; ++a) filter += 0.5 / texels.size[a] / 512.0;
+    for (int a = 0; a < 3; ++a) filter += 0.5 / (texels.size[a] - 1) / 256.0;
     for (std::size_t i = 0; i < places.size(); ++i)
       for (int c = 0; c < channels(); ++c) ASSERT_NEAR(read[i][c], ramp(Vec3(places[i]), c), filter + reading());
   }
@@ -124,8 +124,8 @@ TEST_P(Uploader, AgreesWithTheLookUpOnTheProcessor) {
   for (std::size_t i = 0; i < places.size(); ++i) {
     const Vec3f expected = light.at_world(Vec3(places[i]) * Vec3(volume.size - 1));
     for (int c = 0; c < 3; ++c) {
-      // Weights of 8 bits on three axes between values that differ by at most 1.
-      ASSERT_NEAR(read[i][c], expected[c], 3.0 / 512.0 + reading());
+      // Weights of 8 bits on three axes, rounded or cut off, between values that differ by at most 1.
+      ASSERT_NEAR(read[i][c], expected[c], 3.0 / 256.0 + reading());
     }
   }
 }

@@ -7,7 +7,8 @@
 namespace isolux {
 namespace {
 
-constexpr double kMargin = 1e-6;  // of a texel; points of a cell's face round to either side
+// Of a texel. Points of a cell's face round to either side, in a shader's single precision by 1e-4 texel in 1000.
+constexpr double kMargin = 1e-3;
 
 /// Marks the pages that reading at points of voxel cells [first, last] touches.
 void mark(LightBricks& bricks, const Index3& texels, const IndexToWorld& to_texels, const Index3& cell) {

@@ -1,30 +1,22 @@
+#include <fmt/format.h>
 #include <isolux/resample/light_reader.h>
 
+#include <algorithm>
+
 namespace isolux {
+namespace {
 
-const char* light_reader_glsl() {
-  return R"(#version 330 core
-
-uniform sampler3D light_offsets;    // V
-uniform float light_gain;           // what V is to be multiplied with
-uniform vec3 light_scale;           // texture coordinate of V and S = scale * place + offset
-uniform vec3 light_offset;
-uniform bool light_has_slopes;
-uniform sampler3D light_slopes;     // S
-uniform float reference_isovalue;   // h0
-uniform float light_ceiling;
+constexpr const char* kVolume = R"(
 uniform sampler3D volume_values;    // f, texels at the grid points
 uniform vec3 grid_points;           // of the volume
 uniform mat3 index_from_world;      // directions
-uniform float mean_spacing;
-uniform int near_field_terms;       // at most 4; without any, f is not read
-uniform float near_field_step[4];
-uniform float near_field_mean[4];
-uniform vec3 near_field_weight[4];
 
 float volume_at(vec3 index) { return texture(volume_values, (index + 0.5) / grid_points).r; }
+)";
 
-vec3 volume_gradient(vec3 index) {
+constexpr const char* kGradient = R"(
+vec3 volume_gradient(vec3 place) {
+  vec3 index = place * (grid_points - 1.0);
   // Equal to interpolating the grid points' central differences, but on the outermost grid points.
   vec3 g;
   g.x = volume_at(index + vec3(1, 0, 0)) - volume_at(index - vec3(1, 0, 0));
@@ -32,32 +24,71 @@ vec3 volume_gradient(vec3 index) {
   g.z = volume_at(index + vec3(0, 0, 1)) - volume_at(index - vec3(0, 0, 1));
   return 0.5 * transpose(index_from_world) * g;
 }
+)";
 
-vec3 near_field(vec3 index, float isovalue) {
+constexpr const char* kReader = R"(
+uniform sampler3D light_offsets;    // V; of bricks, their atlas
+uniform float light_gain;           // what V is to be multiplied with
+uniform vec3 light_scale;           // texture coordinate of V and S = scale * place + offset
+uniform vec3 light_offset;
+uniform sampler3D light_slopes;     // S, likewise
+uniform float light_slope_gain;
+uniform sampler3D light_pages;      // where in the atlas a brick is, in 1/1023; alpha is 0 where there is none
+uniform vec3 light_texels;          // of the whole light
+uniform vec3 light_page_count;
+uniform vec3 atlas_texels;
+uniform float reference_isovalue;   // h0
+uniform float light_ceiling;
+uniform float mean_spacing;
+uniform float near_field_step[near_field_room];
+uniform float near_field_mean[near_field_room];
+uniform vec3 near_field_weight[near_field_room];
+
+vec3 near_field(vec3 index, float isovalue, vec3 gradient) {
   vec3 e = vec3(0.0);
-  vec3 gradient = volume_gradient(index);
-  float steepness = length(gradient);
+  float square = dot(gradient, gradient);
+  float flatness = square > 0.0 ? inversesqrt(square) : 0.0;
+  vec3 ahead = index_from_world * (gradient * (-mean_spacing * flatness));
   for (int t = 0; t < near_field_terms; ++t) {
-    float reach = near_field_step[t] * mean_spacing;
-    float openness = 0.0;
-    if (steepness > 0.0) {
-      vec3 ahead = index - index_from_world * (gradient * (reach / steepness));
-      openness = clamp((isovalue - volume_at(ahead)) / (steepness * reach), -1.0, 1.0);
-    }
+    float fall = isovalue - volume_at(index + near_field_step[t] * ahead);
+    float openness = clamp(fall * (flatness / (near_field_step[t] * mean_spacing)), -1.0, 1.0);
     e += near_field_weight[t] * (openness - near_field_mean[t]);
   }
   return e;
 }
 
-vec3 read_light(vec3 place, float isovalue) {
+// From a coordinate in the whole light to one in the atlas; false where there is no brick.
+bool find_brick(inout vec3 coordinate) {
+  vec3 texel = clamp(coordinate * light_texels - 0.5, vec3(0.0), light_texels - 1.0);
+  vec3 page = floor(0.25 * min(texel, max(light_texels - 2.0, 0.0)));
+  vec4 brick = texture(light_pages, (page + 0.5) / light_page_count);
+  coordinate = (5.0 * 1023.0 * brick.xyz + (texel - 4.0 * page) + 0.5) / atlas_texels;
+  return brick.a > 0.0;
+}
+
+vec3 read_light(vec3 place, float isovalue, vec3 gradient) {
   vec3 coordinate = light_scale * place + light_offset;
+  if (light_in_bricks && !find_brick(coordinate)) return vec3(0.0);
   vec3 e = light_gain * texture(light_offsets, coordinate).rgb;
   if (!light_has_slopes && near_field_terms == 0) return e;
-  if (light_has_slopes) e += texture(light_slopes, coordinate).rgb * (isovalue - reference_isovalue);
-  if (near_field_terms > 0) e += near_field(place * (grid_points - 1.0), isovalue);
+  if (light_has_slopes) e += texture(light_slopes, coordinate).rgb * (light_slope_gain * (isovalue - reference_isovalue));
+  if (near_field_terms > 0) e += near_field(place * (grid_points - 1.0), isovalue, gradient);
   return clamp(e, 0.0, light_ceiling);
 }
 )";
+
+}  // namespace
+
+std::string light_reader_glsl(const LightShader& kind) {
+  return fmt::format(
+      "#version 330 core\n"
+      "const bool light_has_slopes = {};\n"
+      "const bool light_in_bricks = {};\n"
+      "const int near_field_terms = {};\n"
+      "const int near_field_room = {};  // no array is empty\n{}{}",
+      kind.slopes, kind.bricks, kind.near_field_terms, std::max(kind.near_field_terms, 1), kVolume, kReader);
 }
+
+std::string volume_gradient_glsl() { return fmt::format("#version 330 core\n{}{}", kVolume, kGradient); }
 
 }  // namespace isolux

@@ -48,7 +48,12 @@ void Viewer::start(Document document) {
   slider_ = std::make_unique<Slider>(range.low, range.high, otsu_threshold(document_.histogram));
   trackball_ = std::make_unique<Trackball>(orbit_camera(lattice, settings_.azimuth_deg, settings_.elevation_deg, 1.0),
                                            box_middle(lattice), box_radius(lattice));
-  if (document_.light) take_light(document_.light);
+  if (document_.light) {
+    take_light(document_.light);
+    const std::optional<ValueRange> lit = document_.light->grid.detail.isovalues;
+    const bool inside = !lit || (slider_->value() >= double(lit->low) && slider_->value() <= double(lit->high));
+    if (!inside) slider_->set_value(0.5 * (double(lit->low) + double(lit->high)));
+  }
   const auto maker = std::make_shared<SurfaceMaker>(volume, stages_.extractors, settings_.extractor);
   worker_ = std::make_unique<SurfaceWorker>(
       [maker, run = settings_.run](const ExtractSettings& wanted, IndexedMesh memory, std::stop_token stop) {
@@ -147,11 +152,6 @@ void Viewer::show_side_by_side() {
   } else {
     layout_ = layout_ == Layout::kSideBySide ? Layout::kGlobal : Layout::kSideBySide;
   }
-}
-
-std::string Viewer::advice() const {
-  if (bake_) return "the light is being baked";
-  return "no light yet: press b for a draft, or\nisolux bake VOLUME -o LIGHT.nrrd  and give --light LIGHT.nrrd";
 }
 
 void Viewer::start_bake() {

@@ -102,6 +102,8 @@ class Viewer {
   void draw_texts(const WindowSize& size);
   void draw_help(const WindowSize& size);
   [[nodiscard]] std::string advice() const;
+  /// Whether the light is one of the shown isovalue, too.
+  [[nodiscard]] bool lit_here() const;
 
   ViewerSettings settings_;
   const Stages& stages_;

@@ -42,12 +42,32 @@ std::string grouped(std::size_t count) {
   return digits;
 }
 
+std::string in_words(const LightMemory& memory) {
+  if (memory.light == 0) return "";
+  const std::string light = fmt::format(" - light of {:.1f} MB", 1e-6 * double(memory.light));
+  return memory.light == memory.dense ? light
+                                      : light + fmt::format(" in bricks, not {:.1f}", 1e-6 * double(memory.dense));
+}
+
 }  // namespace
 
 std::string Viewer::title() const {
-  return fmt::format("isolux - {} - isovalue {:.5g} - {} triangles in {:.0f} ms - drawn in {:.1f} ms",
+  return fmt::format("isolux - {} - isovalue {:.5g} - {} triangles in {:.0f} ms - drawn in {:.1f} ms{}",
                      short_name(document_.volume->name), slider_->value(),
-                     grouped(shown_.surface.mesh.triangles.size()), 1e3 * shown_.surface.seconds, 1e3 * draw_seconds_);
+                     grouped(shown_.surface.mesh.triangles.size()), 1e3 * shown_.surface.seconds, 1e3 * draw_seconds_,
+                     in_words(renderer_->light_memory()));
+}
+
+bool Viewer::lit_here() const {
+  if (shown_.exact || !document_.light || !document_.light->grid.detail.isovalues) return true;
+  const ValueRange lit = *document_.light->grid.detail.isovalues;
+  const float isovalue = shown_.surface.settings.isovalue;
+  return lit.low <= isovalue && isovalue <= lit.high;
+}
+
+std::string Viewer::advice() const {
+  if (bake_) return "the light is being baked";
+  return "no light yet: press b for a draft, or\nisolux bake VOLUME -o LIGHT.nrrd  and give --light LIGHT.nrrd";
 }
 
 void Viewer::draw_surface(const WindowSize& size) {
@@ -60,7 +80,7 @@ void Viewer::draw_surface(const WindowSize& size) {
   view.albedo = albedo_of(document_, float(slider_->value()));
   for (const Pane& pane : make_panes(layout_, size.width, size.height)) {
     glViewport(int(pane.box.x), 0, std::max(int(pane.box.width), 1), size.height);
-    view.lighting = pane.lighting;
+    view.lighting = lit_here() ? pane.lighting : Lighting::kLocal;
     view.exposure = float(std::exp2(exposure_stops_));
     view.aspect = pane.box.width / std::max(pane.box.height, 1.0);
     renderer_->draw(view);
@@ -104,9 +124,9 @@ void Viewer::draw_texts(const WindowSize& size) {
   const auto panes = make_panes(layout_, size.width, size.height);
   for (const Pane& pane : panes) {
     label(overlay_, pane.box.x + margin, margin, font,
-          pane.lighting == Lighting::kLocal ? "local light"
-          : shown_.exact                    ? "global light, exact"
-                                            : "global light");
+          pane.lighting == Lighting::kLocal || !lit_here() ? "local light"
+          : shown_.exact                                   ? "global light, exact"
+                                                           : "global light");
     if (pane.box.x > 0.0) overlay_.rectangle({pane.box.x - size.scale, 0.0, 2.0 * size.scale, pane.box.height}, kInk);
   }
   double y = margin + 30.0 * size.scale;
@@ -124,6 +144,9 @@ void Viewer::draw_texts(const WindowSize& size) {
     label(overlay_, margin, y, font, message_);
   } else if (!document_.light && !bake_ && !exact_ && !shown_.exact) {
     label(overlay_, margin, y, font, advice());
+  } else if (!lit_here()) {
+    const ValueRange lit = *document_.light->grid.detail.isovalues;
+    label(overlay_, margin, y, font, fmt::format("the light is of isovalues {:.5g} to {:.5g}", lit.low, lit.high));
   } else if (shown_.surface.mesh.triangles.empty() && worker_->idle()) {
     label(overlay_, margin, y, font, "no surface at this isovalue");
   }

@@ -1,74 +1,118 @@
 #include "gl/light_textures.h"
 
 #include <fmt/format.h>
-#include <isolux/core/error.h>
+#include <isolux/gl_texture/brick_textures.h>
 #include <isolux/gl_texture/texture_uploader.h>
-#include <isolux/resample/light_reader.h>
 
+#include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <glm/gtc/type_ptr.hpp>
 #include <glm/matrix.hpp>
+#include <span>
+#include <utility>
 
 namespace isolux::viewer {
 namespace {
 
-constexpr std::size_t kMostTerms = 4;  // as light_reader_glsl() declares them
+/// Whether 16 bits hold every value exactly, as those of 8-bit volumes.
+bool fits_float16(std::span<const float> values) {
+  return std::all_of(values.begin(), values.end(), [](float v) {
+    int exponent = 0;
+    const float mantissa = 2048.0f * std::frexp(v, &exponent);  // 11 significant bits
+    return mantissa == std::floor(mantissa) && std::fabs(v) < 65504.0f && (v == 0.0f || exponent > -14);
+  });
+}
 
-Texture3D upload(const IlluminationGrid& grid, const Lattice& volume, const char* format) {
+Texture3D upload_grid(const IlluminationGrid& grid, const Lattice& volume, const char* format) {
   return uploaders().create({}, {{"format", format}})->upload(grid, volume);
 }
 
 Texture3D upload_values(const Volume& volume) {
   IlluminationGrid values(volume.lattice(), 1);
   values.values.assign(volume.values.values().begin(), volume.values.values().end());
-  return upload(values, volume.lattice(), "float32");
+  return upload_grid(values, volume.lattice(), fits_float16(values.values) ? "float16" : "float32");
+}
+
+void bind_texture(const ShaderProgram& program, GLint unit, const char* uniform, const Texture3D& texture) {
+  glUniform1i(program.uniform(uniform), unit);
+  glActiveTexture(GLenum(GL_TEXTURE0 + unit));
+  glBindTexture(GL_TEXTURE_3D, texture.name());
 }
 
 }  // namespace
 
 LightTextures::LightTextures(const Volume& volume, const IlluminationGrid& light)
-    : volume_(volume.lattice()), terms_(light.detail.near_field), ceiling_(light.detail.ceiling) {
-  if (light.detail.empty()) {
-    offsets_ = upload(light, volume_, "float16");
-    return;
-  }
-  if (terms_.size() > kMostTerms) {
-    throw InvalidInput(
-        fmt::format("a light with {} near-field terms: the window reads up to {}", terms_.size(), kMostTerms));
-  }
-  const LightReader reader(volume, light);
-  reference_isovalue_ = reader.reference_isovalue();
-  // Offsets and slopes cancel: far from the reference isovalue both are large.
-  offsets_ = upload(reader.offsets(), volume_, "float32");
-  if (!reader.slopes().empty()) {
-    IlluminationGrid slopes(light.lattice, light.channels);
-    slopes.values = reader.slopes();
-    slopes_ = upload(slopes, volume_, "float32");
-  }
-  if (!terms_.empty()) values_ = upload_values(volume);
+    : volume_(volume.lattice()),
+      mapping_(texture_mapping(light.lattice, volume_)),
+      texels_(light.lattice.size),
+      terms_(light.detail.near_field),
+      ceiling_(light.detail.ceiling) {
+  upload(LightReader(volume, light, TexelStorage::kBricks), light);
+  if (terms_.empty()) return;
+  values_ = upload_values(volume);
+  memory_.volume = values_->bytes();
 }
 
-void LightTextures::bind(const ShaderProgram& program) const {
-  const auto texture = [&](GLint unit, const char* uniform, const Texture3D* bound) {
-    glUniform1i(program.uniform(uniform), unit);
-    glActiveTexture(GLenum(GL_TEXTURE0 + unit));
-    glBindTexture(GL_TEXTURE_3D, bound != nullptr ? bound->name() : 0);
+void LightTextures::upload(const LightReader& reader, const IlluminationGrid& light) {
+  reference_isovalue_ = reader.reference_isovalue();
+  const std::vector<float>& slopes = light.detail.slopes;
+  for (const float slope : slopes) slope_gain_ = std::max(slope_gain_, std::fabs(slope));
+  // float16 would lose slopes per unit of a large range of values, and adds .0003 rms to light read so.
+  const auto scaled = [this](std::vector<float> values) {
+    for (float& slope : values) slope /= slope_gain_;
+    return values;
   };
-  texture(2, "volume_values", values_ ? &*values_ : nullptr);
-  texture(1, "light_slopes", slopes_ ? &*slopes_ : nullptr);
-  texture(0, "light_offsets", &offsets_);
-  glUniform1f(program.uniform("light_gain"), float(offsets_.gain()));
-  glUniform3fv(program.uniform("light_scale"), 1, glm::value_ptr(Vec3f(offsets_.scale())));
-  glUniform3fv(program.uniform("light_offset"), 1, glm::value_ptr(Vec3f(offsets_.offset())));
-  glUniform1i(program.uniform("light_has_slopes"), slopes_ ? 1 : 0);
-  glUniform1f(program.uniform("reference_isovalue"), reference_isovalue_);
-  glUniform1f(program.uniform("light_ceiling"), ceiling_);
-  glUniform1i(program.uniform("near_field_terms"), GLint(terms_.size()));
-  if (terms_.empty()) return;
-  const Vec3 spacing = volume_.frame.spacing();
+  memory_.dense = (light.values.size() + slopes.size()) * sizeof(std::uint16_t);
+  if (reader.bricks() != nullptr) {
+    LightBricks bricks = *reader.bricks();
+    bricks.slopes = scaled(std::move(bricks.slopes));
+    BrickTextures textures = upload_bricks(bricks, TexelFormat::kFloat16);
+    memory_.light = textures.bytes();
+    offsets_ = std::move(textures.values);
+    slopes_ = std::move(textures.slopes);
+    pages_ = std::move(textures.pages);
+    return;
+  }
+  memory_.light = memory_.dense;
+  offsets_ = upload_grid(reader.offsets(), volume_, "float16");
+  if (slopes.empty()) return;
+  IlluminationGrid grid(light.lattice, light.channels);
+  grid.values = scaled(slopes);
+  slopes_ = upload_grid(grid, volume_, "float16");
+}
+
+LightShader LightTextures::kind() const {
+  return {.slopes = slopes_.has_value(), .bricks = pages_.has_value(), .near_field_terms = int(terms_.size())};
+}
+
+void LightTextures::bind_volume(const ShaderProgram& program) const {
+  bind_texture(program, 2, "volume_values", *values_);
   glUniform3fv(program.uniform("grid_points"), 1, glm::value_ptr(Vec3f(volume_.size)));
   glUniformMatrix3fv(program.uniform("index_from_world"), 1, GL_FALSE,
                      glm::value_ptr(glm::mat3(glm::inverse(volume_.frame.axes))));
+}
+
+void LightTextures::bind(const ShaderProgram& program) const {
+  if (pages_) {
+    bind_texture(program, 3, "light_pages", *pages_);
+    glUniform3fv(program.uniform("light_texels"), 1, glm::value_ptr(texels_));
+    glUniform3fv(program.uniform("light_page_count"), 1, glm::value_ptr(Vec3f(pages_->size())));
+    glUniform3fv(program.uniform("atlas_texels"), 1, glm::value_ptr(Vec3f(offsets_.size())));
+  }
+  if (values_) bind_volume(program);
+  if (slopes_) {
+    bind_texture(program, 1, "light_slopes", *slopes_);
+    glUniform1f(program.uniform("light_slope_gain"), slope_gain_);
+  }
+  bind_texture(program, 0, "light_offsets", offsets_);
+  glUniform1f(program.uniform("light_gain"), float(offsets_.gain()));
+  glUniform3fv(program.uniform("light_scale"), 1, glm::value_ptr(Vec3f(mapping_.scale)));
+  glUniform3fv(program.uniform("light_offset"), 1, glm::value_ptr(Vec3f(mapping_.offset)));
+  glUniform1f(program.uniform("reference_isovalue"), reference_isovalue_);
+  glUniform1f(program.uniform("light_ceiling"), ceiling_);
+  if (terms_.empty()) return;
+  const Vec3 spacing = volume_.frame.spacing();
   glUniform1f(program.uniform("mean_spacing"), float(std::cbrt(spacing.x * spacing.y * spacing.z)));
   for (std::size_t t = 0; t < terms_.size(); ++t) {
     const auto element = [&](const char* name) { return program.uniform(fmt::format("{}[{}]", name, t).c_str()); };

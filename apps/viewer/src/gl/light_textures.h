@@ -3,7 +3,10 @@
 #include <isolux/core/illumination_grid.h>
 #include <isolux/core/volume.h>
 #include <isolux/gl_texture/texture3d.h>
+#include <isolux/resample/light_reader.h>
 
+#include <cstddef>
+#include <limits>
 #include <optional>
 #include <vector>
 
@@ -11,24 +14,44 @@
 
 namespace isolux::viewer {
 
-/// A light as light_reader_glsl() reads it: its textures and uniforms.
+/// What a light takes on the graphics card, bytes.
+struct LightMemory {
+  std::size_t light = 0;   ///< texels, and page table where there is one
+  std::size_t dense = 0;   ///< the same texels without bricks; equal to `light` where there are none
+  std::size_t volume = 0;  ///< of the volume's values, for the near field
+};
+
+/// A light as light_reader_glsl() reads it: its textures and uniforms. That of a known range of isovalues is kept in
+/// bricks where that is less.
 class LightTextures {
  public:
-  /// \throw GlError, InvalidInput as TextureUploader::upload and LightReader; InvalidInput for more near-field terms
-  /// than the shader takes
+  /// \throw GlError, InvalidInput as TextureUploader::upload, upload_bricks() and LightReader
   LightTextures(const Volume& volume, const IlluminationGrid& light);
 
-  /// Sets the uniforms of the program in use and binds the textures to units 0 to 2.
+  /// What its shader needs to know.
+  [[nodiscard]] LightShader kind() const;
+  /// Sets the uniforms of volume_gradient_glsl() of the program in use and binds the volume. \pre near-field terms
+  void bind_volume(const ShaderProgram& program) const;
+  /// Sets the uniforms of the program in use and binds the textures.
   void bind(const ShaderProgram& program) const;
 
+  [[nodiscard]] const LightMemory& memory() const { return memory_; }
+
  private:
+  void upload(const LightReader& reader, const IlluminationGrid& light);
+
   Lattice volume_;
+  TextureMapping mapping_;
+  Vec3f texels_;
   Texture3D offsets_;
   std::optional<Texture3D> slopes_;
+  std::optional<Texture3D> pages_;   ///< with them the two above are atlases of bricks
   std::optional<Texture3D> values_;  ///< of the volume, for the near field
   std::vector<NearFieldTerm> terms_;
   float reference_isovalue_ = 0.0f;
   float ceiling_ = 0.0f;
+  float slope_gain_ = std::numeric_limits<float>::min();
+  LightMemory memory_;
 };
 
 }  // namespace isolux::viewer

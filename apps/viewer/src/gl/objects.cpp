@@ -22,11 +22,13 @@ std::string first_line(const std::vector<char>& log) {
 
 }  // namespace
 
-ShaderProgram::ShaderProgram(const char* vertex_source, std::initializer_list<const char*> fragment_sources)
+ShaderProgram::ShaderProgram(Sources vertex_sources, Sources fragment_sources, const char* captured)
     : name_(glCreateProgram()) {
-  std::vector<GLuint> shaders{compile(GL_VERTEX_SHADER, vertex_source)};
-  for (const char* source : fragment_sources) shaders.push_back(compile(GL_FRAGMENT_SHADER, source));
+  std::vector<GLuint> shaders;
+  for (const std::string& source : vertex_sources) shaders.push_back(compile(GL_VERTEX_SHADER, source.c_str()));
+  for (const std::string& source : fragment_sources) shaders.push_back(compile(GL_FRAGMENT_SHADER, source.c_str()));
   for (const GLuint shader : shaders) glAttachShader(name_, shader);
+  if (captured != nullptr) glTransformFeedbackVaryings(name_, 1, &captured, GL_INTERLEAVED_ATTRIBS);
   glLinkProgram(name_);
   GLint linked = 0;
   glGetProgramiv(name_, GL_LINK_STATUS, &linked);
@@ -43,21 +45,23 @@ ShaderProgram::ShaderProgram(const char* vertex_source, std::initializer_list<co
   throw GlError(fmt::format("OpenGL does not take a shader: {}", first_line(log)));
 }
 
-void Buffer::fill(const void* data, std::size_t bytes) {
+void Buffer::reserve(std::size_t bytes) {
   bind();
-  if (bytes <= capacity_) {
-    glBufferSubData(target_, 0, GLsizeiptr(bytes), data);
-    return;
-  }
+  if (bytes <= capacity_) return;
   while (glGetError() != GL_NO_ERROR) {
     // Errors of others are not this buffer's.
   }
-  glBufferData(target_, GLsizeiptr(bytes), data, GL_DYNAMIC_DRAW);
+  glBufferData(target_, GLsizeiptr(bytes), nullptr, GL_DYNAMIC_DRAW);
   if (glGetError() != GL_NO_ERROR) {
     capacity_ = 0;
     throw GlError(fmt::format("OpenGL has no room for a buffer of {} bytes", bytes));
   }
   capacity_ = bytes;
+}
+
+void Buffer::fill(const void* data, std::size_t bytes) {
+  reserve(bytes);
+  glBufferSubData(target_, 0, GLsizeiptr(bytes), data);
 }
 
 }  // namespace isolux::viewer

@@ -8,12 +8,15 @@
 
 namespace isolux::viewer {
 
-/// A linked program of a vertex shader and fragment shaders, of which one has main(). Like all here: made, used and
+/// A linked program of vertex and fragment shaders; one of each stage has main(). Like all here: made, used and
 /// destroyed with the same context current.
 class ShaderProgram {
  public:
+  using Sources = std::initializer_list<std::string>;
+
+  /// `captured` is the output of the vertex shaders that goes to a buffer (transform feedback), if any.
   /// \throw GlError with the first line of the driver's log
-  ShaderProgram(const char* vertex_source, std::initializer_list<const char*> fragment_sources);
+  ShaderProgram(Sources vertex_sources, Sources fragment_sources, const char* captured = nullptr);
   ShaderProgram(const ShaderProgram&) = delete;
   ShaderProgram& operator=(const ShaderProgram&) = delete;
   ~ShaderProgram() { glDeleteProgram(name_); }
@@ -48,8 +51,11 @@ class Buffer {
   ~Buffer() { glDeleteBuffers(1, &name_); }
 
   void bind() const { glBindBuffer(target_, name_); }
-  /// Binds it and replaces its content. \throw GlError if OpenGL has no memory for it
+  /// Binds it and makes room, the content left open. \throw GlError if OpenGL has no memory for it
+  void reserve(std::size_t bytes);
+  /// Binds it and replaces its content. \throw as reserve()
   void fill(const void* data, std::size_t bytes);
+  [[nodiscard]] GLuint name() const { return name_; }
 
  private:
   GLenum target_;

@@ -5,7 +5,7 @@
 
 namespace isolux::viewer {
 
-Overlay::Overlay() : program_(kOverlayVertexShader, {kOverlayFragmentShader}) {
+Overlay::Overlay() : program_({kOverlayVertexShader}, {kOverlayFragmentShader}) {
   vertex_array_.bind();
   buffer_.bind();
   glEnableVertexAttribArray(0);

@@ -1,5 +1,6 @@
 #include "gl/surface_renderer.h"
 
+#include <fmt/format.h>
 #include <isolux/resample/light_reader.h>
 
 #include <glm/geometric.hpp>
@@ -7,6 +8,7 @@
 #include <glm/mat4x4.hpp>
 #include <glm/matrix.hpp>
 #include <iterator>
+#include <string>
 #include <utility>
 
 #include "camera/framing.h"
@@ -15,7 +17,20 @@
 namespace isolux::viewer {
 namespace {
 
-constexpr GLuint kExactAttribute = 2;
+constexpr GLuint kExtraAttribute = 2;
+enum class Shading { kLocal, kExact, kRead, kReadInner, kLines };
+
+std::string fragment_shader(Shading shading) {
+  return fmt::format(
+      "#version 330 core\n"
+      "const bool flat_colour = {};\n"
+      "const bool global_light = {};\n"
+      "const bool exact_light = {};\n"
+      "const bool inner_light = {};\n{}",
+      shading == Shading::kLines, shading != Shading::kLocal && shading != Shading::kLines, shading == Shading::kExact,
+      shading == Shading::kReadInner, kSurfaceFragmentShader);
+}
+
 constexpr Vec3f kLineColour(0.08f, 0.1f, 0.2f);
 
 template <class Values>
@@ -29,12 +44,15 @@ SurfaceRenderer::SurfaceRenderer(std::shared_ptr<const Volume> volume)
     : volume_(std::move(volume)),
       centre_(box_middle(volume_->lattice())),
       radius_(box_radius(volume_->lattice())),
-      program_(kSurfaceVertexShader, {kSurfaceFragmentShader, light_reader_glsl()}) {
+      local_({kSurfaceVertexShader}, {fragment_shader(Shading::kLocal), light_reader_glsl({})}),
+      exact_light_({kSurfaceVertexShader}, {fragment_shader(Shading::kExact), light_reader_glsl({})}),
+      lines_({kSurfaceVertexShader}, {fragment_shader(Shading::kLines), light_reader_glsl({})}),
+      gradients_({kGradientVertexShader, volume_gradient_glsl()}, {}, "gradient") {
   vertex_array_.bind();
-  const Buffer* attributes[] = {&positions_, &normals_, &exact_};
+  const Buffer* attributes[] = {&positions_, &normals_};
   for (GLuint i = 0; i < std::size(attributes); ++i) {
     attributes[i]->bind();
-    if (i != kExactAttribute) glEnableVertexAttribArray(i);
+    glEnableVertexAttribArray(i);
     glVertexAttribPointer(i, 3, GL_FLOAT, GL_FALSE, 0, nullptr);
   }
   indices_.bind();
@@ -42,87 +60,131 @@ SurfaceRenderer::SurfaceRenderer(std::shared_ptr<const Volume> volume)
 
 void SurfaceRenderer::set_surface(const IndexedMesh& mesh, float isovalue) {
   index_count_ = 0;
-  set_exact_light({});
   vertex_array_.bind();
   positions_.fill(mesh.positions.data(), bytes(mesh.positions));
   normals_.fill(mesh.normals.data(), bytes(mesh.normals));
   indices_.fill(mesh.triangles.data(), bytes(mesh.triangles));
+  vertex_count_ = GLsizei(mesh.positions.size());
   index_count_ = GLsizei(mesh.triangles.size() * 3);
   isovalue_ = isovalue;
+  has_gradients_ = false;
+  set_exact_light({});
 }
 
+SurfaceRenderer::Light::Light(const Volume& volume, const IlluminationGrid& light, Side side)
+    : textures(volume, light),
+      program({kSurfaceVertexShader}, {fragment_shader(side == Side::kOuter ? Shading::kRead : Shading::kReadInner),
+                                       light_reader_glsl(textures.kind())}) {}
+
 void SurfaceRenderer::set_light(const IlluminationGrid& light) {
-  light_.emplace(*volume_, light);
+  light_.emplace(*volume_, light, Light::Side::kOuter);
   inner_light_.reset();
   set_exact_light({});
 }
 
-void SurfaceRenderer::set_inner_light(const IlluminationGrid& light) { inner_light_.emplace(*volume_, light); }
+void SurfaceRenderer::set_inner_light(const IlluminationGrid& light) {
+  inner_light_.emplace(*volume_, light, Light::Side::kInner);
+}
 
 void SurfaceRenderer::set_exact_light(std::span<const Vec3f> radiance) {
   has_exact_ = !radiance.empty();
+  if (has_exact_) exact_.fill(radiance.data(), radiance.size_bytes());
+}
+
+void SurfaceRenderer::compute_gradients(const LightTextures& light) {
+  if (has_gradients_) return;
+  gradient_values_.reserve(std::size_t(vertex_count_) * sizeof(Vec3f));
+  use(gradients_);
+  light.bind_volume(gradients_);
   vertex_array_.bind();
-  if (has_exact_) {
-    exact_.fill(radiance.data(), radiance.size_bytes());
-    glEnableVertexAttribArray(kExactAttribute);
-  } else {
-    glDisableVertexAttribArray(kExactAttribute);
-  }
+  glDisableVertexAttribArray(kExtraAttribute);
+  glEnable(GL_RASTERIZER_DISCARD);
+  glBindBufferBase(GL_TRANSFORM_FEEDBACK_BUFFER, 0, gradient_values_.name());
+  glBeginTransformFeedback(GL_POINTS);
+  glDrawArrays(GL_POINTS, 0, vertex_count_);
+  glEndTransformFeedback();
+  glBindBufferBase(GL_TRANSFORM_FEEDBACK_BUFFER, 0, 0);
+  glDisable(GL_RASTERIZER_DISCARD);
+  has_gradients_ = true;
 }
 
-/// All triangles; where both sides have light, front faces and then back faces with theirs.
-void SurfaceRenderer::draw_faces(bool global) const {
-  const bool both = global && inner_light_;
-  glUniform1i(program_.uniform("inner_light"), 0);
-  if (both) {
-    glEnable(GL_CULL_FACE);
-    glCullFace(GL_BACK);
-  }
-  glDrawElements(GL_TRIANGLES, index_count_, GL_UNSIGNED_INT, nullptr);
-  if (!both) return;
-  inner_light_->bind(program_);
-  glUniform1i(program_.uniform("inner_light"), 1);
-  glCullFace(GL_FRONT);
-  glDrawElements(GL_TRIANGLES, index_count_, GL_UNSIGNED_INT, nullptr);
-  glDisable(GL_CULL_FACE);
+void SurfaceRenderer::hand_on(const Buffer& values) const {
+  vertex_array_.bind();
+  values.bind();
+  glVertexAttribPointer(kExtraAttribute, 3, GL_FLOAT, GL_FALSE, 0, nullptr);
+  glEnableVertexAttribArray(kExtraAttribute);
 }
 
-void SurfaceRenderer::draw(const SurfaceView& view) const {
-  if (index_count_ == 0) return;
-  const bool global = view.lighting == Lighting::kGlobal && (light_ || has_exact_);
-  const Vec3 centre(centre_);
-  const glm::mat4 clip(clip_from_centred(view.camera, centre, radius_, view.aspect));
+void SurfaceRenderer::read_from(const Light& light, const SurfaceView& view) {
+  vertex_array_.bind();
+  glDisableVertexAttribArray(kExtraAttribute);
+  if (light.textures.kind().near_field_terms > 0) {
+    compute_gradients(light.textures);
+    hand_on(gradient_values_);
+  }
+  use(light.program, view);
+  light.textures.bind(light.program);
+}
+
+void SurfaceRenderer::use(const ShaderProgram& program) const {
   // Place in the box from a position relative to the box's middle, whose place is 1/2 on each axis.
   const Lattice& lattice = volume_->lattice();
   Mat3 axes = lattice.frame.axes;
   for (int a = 0; a < 3; ++a) axes[a] *= double(lattice.size[a] - 1);
   const glm::mat3 place(glm::inverse(axes));
+  program.use();
+  glUniform3fv(program.uniform("centre"), 1, glm::value_ptr(centre_));
+  glUniformMatrix3fv(program.uniform("place_from_centred"), 1, GL_FALSE, glm::value_ptr(place));
+}
+
+void SurfaceRenderer::use(const ShaderProgram& program, const SurfaceView& view) const {
+  const Vec3 centre(centre_);
+  const glm::mat4 clip(clip_from_centred(view.camera, centre, radius_, view.aspect));
   const Vec3f eye(view.camera.eye - centre);
-  program_.use();
-  glUniform3fv(program_.uniform("centre"), 1, glm::value_ptr(centre_));
-  glUniformMatrix4fv(program_.uniform("clip_from_centred"), 1, GL_FALSE, glm::value_ptr(clip));
-  glUniformMatrix3fv(program_.uniform("place_from_centred"), 1, GL_FALSE, glm::value_ptr(place));
-  glUniform3fv(program_.uniform("eye"), 1, glm::value_ptr(eye));
-  glUniform3fv(program_.uniform("albedo"), 1, glm::value_ptr(view.albedo));
-  glUniform1f(program_.uniform("exposure"), view.exposure);
-  glUniform1i(program_.uniform("global_light"), global ? 1 : 0);
-  glUniform1i(program_.uniform("flat_colour"), 0);
-  glUniform3fv(program_.uniform("line_colour"), 1, glm::value_ptr(kLineColour));
-  glUniform1f(program_.uniform("isovalue"), isovalue_);
-  glUniform1i(program_.uniform("exact_light"), has_exact_ ? 1 : 0);
-  if (global && light_) light_->bind(program_);
-  glEnable(GL_DEPTH_TEST);
+  use(program);
+  glUniformMatrix4fv(program.uniform("clip_from_centred"), 1, GL_FALSE, glm::value_ptr(clip));
+  glUniform3fv(program.uniform("eye"), 1, glm::value_ptr(eye));
+  glUniform3fv(program.uniform("albedo"), 1, glm::value_ptr(view.albedo));
+  glUniform1f(program.uniform("exposure"), view.exposure);
+  glUniform3fv(program.uniform("line_colour"), 1, glm::value_ptr(kLineColour));
+  glUniform1f(program.uniform("isovalue"), isovalue_);
+}
+
+void SurfaceRenderer::draw(const SurfaceView& view) {
+  if (index_count_ == 0) return;
+  const bool global = view.lighting == Lighting::kGlobal;
+  const bool both = global && inner_light_;
   vertex_array_.bind();
+  glDisableVertexAttribArray(kExtraAttribute);
+  if (global && has_exact_) {
+    use(exact_light_, view);
+    hand_on(exact_);
+  } else if (global && light_) {
+    read_from(*light_, view);
+  } else {
+    use(local_, view);
+  }
+  glEnable(GL_DEPTH_TEST);
   const bool triangles = view.style == SurfaceStyle::kTriangles;
   if (triangles) {
     // Pushed back so that the lines on the same triangles win the depth test.
     glEnable(GL_POLYGON_OFFSET_FILL);
     glPolygonOffset(1.0f, 1.0f);
   }
-  draw_faces(global);
+  if (both) {
+    glEnable(GL_CULL_FACE);
+    glCullFace(GL_BACK);
+  }
+  glDrawElements(GL_TRIANGLES, index_count_, GL_UNSIGNED_INT, nullptr);
+  if (both) {
+    read_from(*inner_light_, view);
+    glCullFace(GL_FRONT);
+    glDrawElements(GL_TRIANGLES, index_count_, GL_UNSIGNED_INT, nullptr);
+    glDisable(GL_CULL_FACE);
+  }
   if (!triangles) return;
   glDisable(GL_POLYGON_OFFSET_FILL);
-  glUniform1i(program_.uniform("flat_colour"), 1);
+  use(lines_, view);
   glPolygonMode(GL_FRONT_AND_BACK, GL_LINE);
   glDrawElements(GL_TRIANGLES, index_count_, GL_UNSIGNED_INT, nullptr);
   glPolygonMode(GL_FRONT_AND_BACK, GL_FILL);

@@ -25,7 +25,8 @@ struct SurfaceView {
   double aspect = 1.0;    ///< width over height of OpenGL's viewport
 };
 
-/// Draws an isosurface of a volume, lit locally or by its 3D textures, as 8-bit sRGB codes.
+/// Draws an isosurface of a volume, lit locally or by its 3D textures, as 8-bit sRGB codes. Each kind of light has a
+/// shader of its own.
 class SurfaceRenderer {
  public:
   /// Needs a current OpenGL 3.3 core context, as all that follows. \throw GlError
@@ -35,6 +36,8 @@ class SurfaceRenderer {
   void set_surface(const IndexedMesh& mesh, float isovalue);
   /// \throw GlError, InvalidInput as LightTextures
   void set_light(const IlluminationGrid& light);
+  /// Of the light set last; zeros without any.
+  [[nodiscard]] LightMemory light_memory() const { return light_ ? light_->textures.memory() : LightMemory{}; }
   /// Light of the inner side, seen on back faces, until another light is set. \pre set_light() \throw as set_light()
   void set_inner_light(const IlluminationGrid& light);
   /// e at the vertices of the surface, until another surface or light is set. \pre as many as vertices
@@ -42,25 +45,49 @@ class SurfaceRenderer {
   void set_exact_light(std::span<const Vec3f> radiance);
 
   /// Into the current framebuffer and viewport, with depth test. Global lighting without any light draws local.
-  void draw(const SurfaceView& view) const;
+  void draw(const SurfaceView& view);
 
  private:
-  void draw_faces(bool global) const;
+  /// Textures and the shader for their kind of light.
+  struct Light {
+    enum class Side { kOuter, kInner };
+    Light(const Volume& volume, const IlluminationGrid& light, Side side);
+
+    LightTextures textures;
+    ShaderProgram program;
+  };
+
+  /// Puts the program into use with what vertices need.
+  void use(const ShaderProgram& program) const;
+  /// The same with what every kind of light needs.
+  void use(const ShaderProgram& program, const SurfaceView& view) const;
+  /// The volume's gradient at the vertices where the light needs it, once for all frames: pixels would fetch the volume
+  /// six times each. Needs a framebuffer, though it draws nothing.
+  void compute_gradients(const LightTextures& light);
+  void read_from(const Light& light, const SurfaceView& view);
+  /// e or gradient: what the vertex shader hands on.
+  void hand_on(const Buffer& values) const;
 
   std::shared_ptr<const Volume> volume_;
   Vec3f centre_;
   double radius_ = 0.0;
-  ShaderProgram program_;
+  ShaderProgram local_;
+  ShaderProgram exact_light_;
+  ShaderProgram lines_;
+  ShaderProgram gradients_;
   VertexArray vertex_array_;
   Buffer positions_{GL_ARRAY_BUFFER};
   Buffer normals_{GL_ARRAY_BUFFER};
   Buffer exact_{GL_ARRAY_BUFFER};
+  Buffer gradient_values_{GL_ARRAY_BUFFER};  ///< of the volume, for the near field
   Buffer indices_{GL_ELEMENT_ARRAY_BUFFER};
+  GLsizei vertex_count_ = 0;
   GLsizei index_count_ = 0;
   float isovalue_ = 0.0f;
   bool has_exact_ = false;
-  std::optional<LightTextures> light_;
-  std::optional<LightTextures> inner_light_;
+  bool has_gradients_ = false;
+  std::optional<Light> light_;
+  std::optional<Light> inner_light_;
 };
 
 }  // namespace isolux::viewer

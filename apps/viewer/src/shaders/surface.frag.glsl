@@ -1,23 +1,19 @@
-#version 330 core
-
+// Comes after #version and the constants flat_colour (for lines), global_light, exact_light (traced at the vertices,
+// instead of read from the texture) and inner_light (of back faces, which read_light() gives); see SurfaceRenderer.
 in vec3 centred;
 in vec3 outward;
-in vec3 place;
-in vec3 exact;
+centroid in vec3 place;  // pixels that a triangle covers in part must not look beyond it: there may be no texels
+centroid in vec3 at_vertices;  // exact light, or the volume's gradient
 
 uniform vec3 eye;       // relative to the centre
 uniform vec3 albedo;
 uniform float exposure;
-uniform bool global_light;
-uniform bool exact_light;  // traced at the vertices, instead of read from the texture
-uniform bool inner_light;  // back faces have light of their own, which read_light() gives
 uniform float isovalue;
-uniform bool flat_colour;  // for lines
 uniform vec3 line_colour;
 
 out vec4 colour;
 
-vec3 read_light(vec3 place, float isovalue);  // light_reader_glsl()
+vec3 read_light(vec3 place, float isovalue, vec3 gradient);  // light_reader_glsl()
 
 // A headlight over the viewer's shoulder and a hemisphere of sky above +z, as isolux render draws them.
 float local_light(vec3 n) {
@@ -40,9 +36,9 @@ void main() {
   if (!global_light) {
     radiance = albedo * local_light(gl_FrontFacing ? n : -n);
   } else if (gl_FrontFacing) {
-    radiance = albedo * (exact_light ? exact : read_light(place, isovalue));
+    radiance = albedo * (exact_light ? at_vertices : read_light(place, isovalue, at_vertices));
   } else if (inner_light) {
-    radiance = albedo * read_light(place, isovalue);
+    radiance = albedo * read_light(place, isovalue, at_vertices);
   } else {
     radiance = albedo * 0.1 * local_light(-n);  // the inner side has no light of its own
   }

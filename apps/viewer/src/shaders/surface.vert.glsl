@@ -2,7 +2,7 @@
 
 layout(location = 0) in vec3 position;  // world
 layout(location = 1) in vec3 normal;    // world
-layout(location = 2) in vec3 light;     // e, where it was traced here
+layout(location = 2) in vec3 extra;     // e where it was traced here, or the volume's gradient
 
 uniform vec3 centre;             // world; what follows is relative to it, so that far origins lose no bits
 uniform mat4 clip_from_centred;
@@ -10,13 +10,13 @@ uniform mat3 place_from_centred;  // to the place in the volume's box, whose mid
 
 out vec3 centred;
 out vec3 outward;
-out vec3 place;
-out vec3 exact;
+centroid out vec3 place;
+centroid out vec3 at_vertices;
 
 void main() {
   centred = position - centre;
   outward = normal;
-  exact = light;
+  at_vertices = extra;
   place = place_from_centred * centred + 0.5;
   gl_Position = clip_from_centred * vec4(centred, 1.0);
 }

@@ -7,6 +7,7 @@
 #include <isolux/core/grid.h>
 #include <isolux/core/illumination_grid.h>
 #include <isolux/core/lattice.h>
+#include <isolux/core/light_bricks.h>
 #include <isolux/core/options.h>
 #include <isolux/core/parallel.h>
 #include <isolux/core/random.h>

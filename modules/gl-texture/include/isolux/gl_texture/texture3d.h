@@ -3,15 +3,18 @@
 #include <isolux/core/vec.h>
 #include <isolux/gl_texture/texture_mapping.h>
 
+#include <cstddef>
+
 namespace isolux {
 
-/// An OpenGL 3D texture, linear, clamped to its edge. Owns the name; moves, does not copy. Made, used and destroyed
+/// An OpenGL 3D texture, clamped to its edge. Owns the name; moves, does not copy. Made, used and destroyed
 /// with the same context current.
 class Texture3D {
  public:
   Texture3D() = default;
   /// Takes over the texture called `name`.
-  Texture3D(unsigned int name, Index3 size, int channels, const TextureMapping& mapping, double gain = 1.0);
+  Texture3D(unsigned int name, Index3 size, int channels, const TextureMapping& mapping, double gain = 1.0,
+            std::size_t bytes = 0);
   Texture3D(Texture3D&& other) noexcept;
   Texture3D& operator=(Texture3D&& other) noexcept;
   Texture3D(const Texture3D&) = delete;
@@ -21,13 +24,15 @@ class Texture3D {
   /// 0 for none.
   [[nodiscard]] unsigned int name() const { return name_; }
   [[nodiscard]] Index3 size() const { return size_; }
-  /// 1 or 3; a shader reads red, green and blue of both, grey three times.
+  /// 1 or 3, of which a shader reads red, green and blue, grey three times; 4 of a page table.
   [[nodiscard]] int channels() const { return channels_; }
   /// Texture coordinate = scale * place + offset, see TextureMapping.
   [[nodiscard]] Vec3 scale() const { return mapping_.scale; }
   [[nodiscard]] Vec3 offset() const { return mapping_.offset; }
   /// e = gain * what the shader reads: 1 unless the light goes beyond what the format can hold.
   [[nodiscard]] double gain() const { return gain_; }
+  /// What its texels take, drivers' padding aside.
+  [[nodiscard]] std::size_t bytes() const { return bytes_; }
 
  private:
   unsigned int name_ = 0;
@@ -35,6 +40,7 @@ class Texture3D {
   int channels_ = 0;
   TextureMapping mapping_;
   double gain_ = 1.0;
+  std::size_t bytes_ = 0;
 };
 
 }  // namespace isolux

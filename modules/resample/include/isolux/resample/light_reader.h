@@ -5,6 +5,7 @@
 #include <isolux/resample/light_bricks.h>
 
 #include <memory>
+#include <string>
 #include <vector>
 
 namespace isolux {
@@ -52,9 +53,23 @@ class LightReader {
   std::unique_ptr<const Impl> impl_;
 };
 
-/// The formula as a shader of its own in GLSL 3.30, to be linked to one that declares and calls
-/// `vec3 read_light(vec3 place, float isovalue)`: place in the volume's box from 0 to 1. It needs the uniforms that its
-/// first lines declare.
-[[nodiscard]] const char* light_reader_glsl();
+/// What of the formula a light needs.
+struct LightShader {
+  bool slopes = false;
+  bool bricks = false;
+  int near_field_terms = 0;
+
+  bool operator==(const LightShader&) const = default;
+};
+
+/// The formula for one kind of light as a shader of its own in GLSL 3.30, to be linked to one that declares and calls
+/// `vec3 read_light(vec3 place, float isovalue, vec3 gradient)`: place in the volume's box from 0 to 1, and the
+/// volume's gradient there in world space, of which only near-field terms make use. It needs the uniforms that its
+/// first lines declare. Kinds are constants of the shader: one that branched on uniforms would pay for all of them.
+[[nodiscard]] std::string light_reader_glsl(const LightShader& kind);
+
+/// `vec3 volume_gradient(vec3 place)` as a shader likewise, for any stage: six fetches of the volume. Between the
+/// vertices of a triangle that lies in one cell it may be interpolated.
+[[nodiscard]] std::string volume_gradient_glsl();
 
 }  // namespace isolux
