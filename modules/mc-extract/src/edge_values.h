@@ -29,14 +29,24 @@ struct EdgeBatch {
 
   /// `ahead` is where the word lies in the highest plane that its edges' gradients read: what other edges have not yet
   /// brought near. Asked for here it is there when the batch is computed.
-  void add(std::uint64_t crossed, int j, int word, const float* ahead) {
+  HWY_INLINE void add(std::uint64_t crossed, int j, int word, const float* ahead) {
     const std::uint32_t first = std::uint32_t(64 * word) | std::uint32_t(j) << 16;
-    for (; crossed != 0; crossed &= crossed - 1) {
+    std::uint32_t* place = edges.data() + count;
+    count += std::popcount(crossed);
+    const auto put = [&] {
       const int bit = std::countr_zero(crossed);
       hwy::Prefetch(ahead + bit);
-      edges[count++] = first + std::uint32_t(bit);
-    }
+      *place++ = first + std::uint32_t(bit);
+      crossed &= crossed - 1;
+    };
+    // Most words have few crossed edges: these are written whether they are there or not, as a loop's end cannot be
+    // foretold.
+    for (int n = 0; n < kUsual; ++n) put();
+    while (crossed != 0) put();
   }
+
+ private:
+  static constexpr int kUsual = 3;
 };
 
 /// The values that the vertices of some edges along kAxis are made from, copied one edge after the other: four that lie

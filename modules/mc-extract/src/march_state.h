@@ -108,6 +108,7 @@ struct WordBits {
   std::array<std::uint64_t, 4> here;
   std::array<std::uint64_t, 4> next;
 
+  WordBits() = default;
   WordBits(const MarchState& march, int j, int k, int word) {
     for (int r = 0; r < 4; ++r) {
       const int row = (r & 1) != 0 && j + 1 < march.ny ? j + 1 : j;

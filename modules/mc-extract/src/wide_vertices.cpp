@@ -194,15 +194,21 @@ void make_vertices_wide(const MarchState& march, int k, const VertexFrame& frame
   VertexMaker<1> make_y(march, k, frame);
   VertexMaker<2> make_z(march, k, frame);
   const std::uint32_t* active = march.slab_active(k);
+  const std::uint64_t* bits = march.row_bits(0, k);
+  const std::uint64_t* upper_bits = march.row_bits(0, std::min(k + 1, march.nz - 1));
+  const float* above = march.row_values(0, std::min(k + 1, march.nz - 1));
+  const float* two_above = march.row_values(0, std::min(k + 2, march.nz - 1));
   for (std::uint32_t n = 0; n < slab.active_words; ++n) {
     const int j = row_of(active[n]);
     const int word = word_of(active[n]);
-    const WordBits bits(march, j, k, word);
-    const float* above = march.row_values(j, std::min(k + 1, march.nz - 1)) + 64 * word;
-    const float* two_above = march.row_values(j, std::min(k + 2, march.nz - 1)) + 64 * word;
-    along_x.add((bits.here[0] ^ bits.next[0]) & march.cell_mask(word), j, word, above);
-    along_y.add(bits.here[0] ^ bits.here[1], j, word, above);
-    along_z.add(bits.here[0] ^ bits.here[2], j, word, two_above);
+    const std::size_t place = std::size_t(j) * std::size_t(march.words) + std::size_t(word);
+    const std::uint64_t here = bits[place];
+    const std::uint64_t next = march.next_bits(bits + place - word, word);
+    const std::uint64_t next_row = j + 1 < march.ny ? bits[place + std::size_t(march.words)] : here;
+    const std::size_t value = std::size_t(j) * std::size_t(march.nx) + std::size_t(64 * word);
+    along_x.add((here ^ next) & march.cell_mask(word), j, word, above + value);
+    along_y.add(here ^ next_row, j, word, above + value);
+    along_z.add(here ^ upper_bits[place], j, word, two_above + value);
     if (along_x.full()) make_x.flush(along_x);
     if (along_y.full()) make_y.flush(along_y);
     if (along_z.full()) make_z.flush(along_z);
