@@ -33,8 +33,7 @@ class IsoExtractor::Implementation {
     const mc::MeshSize size = march_.count(settings, run, index());
     const mc::MeshMemory memory = mc::resize_mesh(mesh, size.vertices, size.edges, size.triangles);
     if (size.triangles == 0) return;
-    march_.write_vertices(run, memory.positions, memory.normals);
-    march_.write_half_edges(run, memory.connectivity);
+    march_.write(run, memory.positions, memory.normals, memory.connectivity);
     if (settings.normals == NormalKind::kFaces) mc::set_face_normals(mesh);
   }
 

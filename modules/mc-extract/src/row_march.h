@@ -44,35 +44,25 @@ class RowMarch {
   /// For half-edges, whose kernel takes its size beforehand. First half: what there is.
   [[nodiscard]] MeshSize count(const ExtractSettings& settings, const Run& run, const BrickIndex* index);
   /// Second half.
-  void write_vertices(const Run& run, float* positions, float* normals) const;
-  void write_half_edges(const Run& run, const HalfEdgeArrays& out) const;
+  void write(const Run& run, float* positions, float* normals, const HalfEdgeArrays& out) const;
 
  private:
-  /// Layers [begin, end) of bricks' height.
-  struct Layers {
-    int begin;
-    int end;
-  };
   /// Slabs [begin, end): a grid plane and what it owns each.
   struct Slabs {
     int begin;
     int end;
   };
   void begin(const ExtractSettings& settings, const Run& run, const BrickIndex* index);
-  void classify(Layers layers, const Run& run);
+  // A layer is as many slabs as a brick is high.
+  [[nodiscard]] int layer_count() const;
+  [[nodiscard]] Slabs slabs_of(int layer) const;
   void classify_layer(int layer);
   void classify_brick_row(int row, int layer);
-  void count_layers(Layers layers, const Run& run, Connectivity connectivity);
+  void count_layer(int layer, Connectivity connectivity);
   /// Gives the slabs their first numbers: layers in rising order.
-  void number(Layers layers);
-  void write_and_classify(Layers here, Layers behind, Layers ahead, const Run& run, IndexedMesh& mesh);
+  void number_layer(int layer);
+  void write_vertices(int layer, float* positions, float* normals) const;
   [[nodiscard]] const CaseTable& cases() const;
-  [[nodiscard]] int layer_count() const;
-  [[nodiscard]] int layers_at_once(const Run& run) const;
-  [[nodiscard]] Slabs slabs_of(Layers layers) const;
-  /// body(k) for every slab of the layers, a slab a task.
-  template <class Body>
-  void for_each_slab(Layers layers, const Run& run, const Body& body) const;
   void link_border(const Run& run, const HalfEdgeArrays& out) const;
 
   Lattice lattice_;
