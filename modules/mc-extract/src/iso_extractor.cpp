@@ -13,7 +13,9 @@ namespace isolux {
 class IsoExtractor::Implementation {
  public:
   Implementation(const Volume& volume, const Run& run, Index index) : volume_(&volume), march_(volume) {
-    if (index == Index::kBricks) index_.emplace(volume, run);
+    if (index != Index::kBricks) return;
+    index_.emplace(volume, run);
+    march_.keep_bytes(volume, run);
   }
 
   void extract(const ExtractSettings& settings, const Run& asked, IndexedMesh& mesh) {

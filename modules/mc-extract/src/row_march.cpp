@@ -5,6 +5,7 @@
 #include <isolux/core/parallel.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <limits>
@@ -48,9 +49,9 @@ VertexFrame vertex_frame(const Lattice& lattice, const LevelSet& level_set) {
 template <class T>
 void grow(LargeVector<T>& vector, std::size_t size, double done) {
   if (vector.capacity() < size) {
-    constexpr double kMost = 64.0;
+    constexpr double kMost = 256.0;
     LargeVector<T> larger;
-    larger.reserve(std::max(vector.capacity() * 3 / 2, std::size_t(double(size) * std::min(1.5 / done, kMost))));
+    larger.reserve(std::max(vector.capacity() * 3 / 2, std::size_t(double(size) * std::min(3.0 / done, kMost))));
     larger.resize(vector.size());
     std::copy(vector.begin(), vector.end(), larger.begin());
     vector.swap(larger);
@@ -91,6 +92,20 @@ RowMarch::RowMarch(const Volume& volume, double dense)
   march_.rows = rows_.data();
   march_.active = active_.data();
   march_.slabs = slabs_.data();
+}
+
+void RowMarch::keep_bytes(const Volume& volume, const Run& run) {
+  const auto values = volume.values.values();
+  constexpr std::size_t kReadBeyond = 64;
+  bytes_.resize(values.size() + kReadBeyond);
+  std::atomic<bool> fit = true;
+  parallel_blocks(values.size(), std::size_t(1) << 18, run, "", [&](const Block& block) {
+    if (fit && !to_bytes(&values[block.begin], block.end - block.begin, &bytes_[block.begin])) fit = false;
+  });
+  if (fit)
+    march_.bytes = bytes_.data();
+  else
+    bytes_ = {};
 }
 
 int RowMarch::layer_count() const { return (march_.nz + kLayer - 1) / kLayer; }

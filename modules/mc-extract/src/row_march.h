@@ -37,6 +37,9 @@ class RowMarch {
   /// \throw InvalidInput for volumes whose planes are beyond 32-bit offsets.
   explicit RowMarch(const Volume& volume, double dense = kDense);
 
+  /// Copies the volume to bytes if all values fit, a quarter of its memory: what is read after that, in place of it.
+  void keep_bytes(const Volume& volume, const Run& run);
+
   /// The whole way, a few layers at a time, so that values and bits are still in the cache where they are used again.
   /// The mesh's memory is used again and grows as needed.
   void march(const ExtractSettings& settings, const Run& run, const BrickIndex* index, IndexedMesh& mesh);
@@ -70,6 +73,7 @@ class RowMarch {
   MarchState march_;
   VertexFrame frame_{};
   bool mirrored_ = false;
+  LargeVector<std::uint8_t> bytes_;
   LargeVector<std::uint64_t> bits_;
   LargeVector<Counts> rows_;
   LargeVector<std::uint32_t> active_;

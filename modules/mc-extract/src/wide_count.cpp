@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <bit>
-#include <limits>
 
 #include "wide_kernels.h"
 
@@ -16,95 +15,6 @@ namespace HWY_NAMESPACE {
 namespace {
 
 namespace hn = hwy::HWY_NAMESPACE;
-
-using Floats = hn::ScalableTag<float>;
-
-/// The inside bits of one vector of values.
-template <class Vector>
-std::uint64_t inside_bits(const Floats d, const Vector value, const Vector isovalue, OuterSide outer) {
-  const auto inside = outer == OuterSide::kLower ? hn::Ge(value, isovalue) : hn::Le(value, isovalue);
-  alignas(8) std::uint8_t bytes[8] = {};
-  hn::StoreMaskBits(d, inside, bytes);
-  if (hn::Lanes(d) <= 8) return bytes[0];
-  std::uint64_t bits = 0;
-  for (std::size_t b = 0; b < hn::Lanes(d) / 8; ++b) bits |= std::uint64_t(bytes[b]) << (8 * b);
-  return bits;
-}
-
-/// The inside bits of up to 64 values.
-std::uint64_t classify_word(const MarchState& march, const float* values, int count) {
-  const Floats d;
-  const int lanes = int(hn::Lanes(d));
-  const auto isovalue = hn::Set(d, march.isovalue);
-  std::uint64_t word = 0;
-  int i = 0;
-  for (; i + lanes <= count; i += lanes) word |= inside_bits(d, hn::LoadU(d, values + i), isovalue, march.outer) << i;
-  for (; i < count; ++i) {
-    const bool inside = march.outer == OuterSide::kLower ? values[i] >= march.isovalue : values[i] <= march.isovalue;
-    word |= std::uint64_t(inside) << i;
-  }
-  return word;
-}
-
-void classify_row_wide(MarchState& march, int j, int k) {
-  const float* values = march.row_values(j, k);
-  std::uint64_t* bits = march.row_bits(j, k);
-  for (int word = 0; word < march.words; ++word)
-    bits[word] = classify_word(march, values + 64 * word, std::min(64, march.nx - 64 * word));
-}
-
-void classify_bricks_wide(MarchState& march, const BrickRows& rows, int word, unsigned active, std::uint64_t uniform) {
-  const int count = std::min(64, march.nx - 64 * word);
-  for (int k = rows.first_plane; k < rows.last_plane; ++k) {
-    for (int j = rows.first_row; j < rows.last_row; ++j) {
-      const float* values = march.row_values(j, k) + 64 * word;
-      std::uint64_t bits = uniform;
-      for (unsigned left = active; left != 0; left &= left - 1) {
-        const int first = 16 * std::countr_zero(left);
-        bits |= classify_word(march, values + first, std::min(16, count - first)) << first;
-      }
-      march.row_bits(j, k)[word] = bits;
-    }
-  }
-}
-
-void find_range_wide(const Volume& volume, const Index3& first, const Index3& last, float& low, float& high) {
-  const Floats d;
-  const int lanes = int(hn::Lanes(d));
-  const Lattice& lattice = volume.lattice();
-  const float* values = volume.values.values().data();
-  constexpr float kInfinity = std::numeric_limits<float>::infinity();
-  auto lowest = hn::Set(d, kInfinity);
-  auto highest = hn::Set(d, -kInfinity);
-  auto odd = hn::MaskFromVec(hn::Zero(d));
-  low = kInfinity;
-  high = -kInfinity;
-  const int count = last.x - first.x + 1;
-  bool odd_tail = false;
-  for (int k = first.z; k <= last.z; ++k) {
-    for (int j = first.y; j <= last.y; ++j) {
-      const float* row = values + lattice.offset(first.x, j, k);
-      int i = 0;
-      for (; i + lanes <= count; i += lanes) {
-        const auto value = hn::LoadU(d, row + i);
-        lowest = hn::Min(lowest, value);
-        highest = hn::Max(highest, value);
-        odd = hn::Or(odd, hn::Ne(value, value));
-      }
-      for (; i < count; ++i) {
-        low = std::min(low, row[i]);
-        high = std::max(high, row[i]);
-        odd_tail |= row[i] != row[i];  // NOLINT(misc-redundant-expression): true of NaN alone
-      }
-    }
-  }
-  low = std::min(low, hn::GetLane(hn::MinOfLanes(d, lowest)));
-  high = std::max(high, hn::GetLane(hn::MaxOfLanes(d, highest)));
-  if (odd_tail || !hn::AllFalse(d, odd)) {
-    low = -kInfinity;
-    high = kInfinity;
-  }
-}
 
 std::uint32_t ones(std::uint64_t bits) { return std::uint32_t(std::popcount(bits)); }
 
@@ -303,21 +213,8 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace isolux::mc {
 
-HWY_EXPORT(classify_row_wide);
-HWY_EXPORT(classify_bricks_wide);
-HWY_EXPORT(find_range_wide);
 HWY_EXPORT(count_slab_indexed);
 HWY_EXPORT(count_slab_half_edges);
-
-void classify_row(MarchState& march, int j, int k) { HWY_DYNAMIC_DISPATCH(classify_row_wide)(march, j, k); }
-
-void classify_bricks(MarchState& march, const BrickRows& rows, int word, unsigned active, std::uint64_t uniform) {
-  HWY_DYNAMIC_DISPATCH(classify_bricks_wide)(march, rows, word, active, uniform);
-}
-
-void find_range(const Volume& volume, const Index3& first, const Index3& last, float& low, float& high) {
-  HWY_DYNAMIC_DISPATCH(find_range_wide)(volume, first, last, low, high);
-}
 
 void count_slab(MarchState& march, int k, const std::uint32_t* candidates, std::size_t candidate_count,
                 Connectivity connectivity) {
