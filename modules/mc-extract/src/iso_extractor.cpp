@@ -1,5 +1,6 @@
 #include <isolux/mc_extract/iso_extractor.h>
 
+#include <functional>
 #include <optional>
 #include <utility>
 
@@ -33,9 +34,11 @@ class IsoExtractor::Implementation {
       return;
     }
     const mc::MeshSize size = march_.count(settings, run, index());
-    const mc::MeshMemory memory = mc::resize_mesh(mesh, size.vertices, size.edges, size.triangles);
+    const mc::MeshMemory memory = mc::reserve_mesh(mesh, size);
     if (size.triangles == 0) return;
-    march_.write(run, memory.positions, memory.normals, memory.connectivity);
+    std::function<void(const mc::MeshSize&)> reach;
+    if (mesh.n_edges() < size.edges) reach = [&](const mc::MeshSize& part) { mc::reach(mesh, part); };
+    march_.write(run, reach, memory.positions, memory.normals, memory.connectivity);
     if (settings.normals == NormalKind::kFaces) mc::set_face_normals(mesh);
   }
 

@@ -8,9 +8,8 @@
 
 namespace isolux::mc {
 
-LayerPipeline::LayerPipeline(int layers, int ahead, Stages stages)
+LayerPipeline::LayerPipeline(int layers, Stages stages)
     : layers_(layers),
-      ahead_(ahead),
       stages_(std::move(stages)),
       bodies_{&stages_.classify, &stages_.count, &stages_.write, &stages_.connect},
       classified_(std::size_t(layers), 0),
@@ -20,6 +19,7 @@ LayerPipeline::LayerPipeline(int layers, int ahead, Stages stages)
 }
 
 void LayerPipeline::run(const Run& run) {
+  ahead_ += thread_count(run);
   // Whoever waits here waits for a task that another thread is at, so any number of these may run at once, one too.
   parallel_blocks(std::size_t(thread_count(run)), 1, run, "", [&](const Block&) { work(run); });
 }
@@ -45,11 +45,12 @@ void LayerPipeline::work(const Run& run) {
 }
 
 LayerPipeline::Next LayerPipeline::take(Task& task) {
-  const std::scoped_lock lock(mutex_);
+  std::unique_lock lock(mutex_);
   if (failed_) return Next::kEnd;
   if (must_grow_ && writing_ == 0) {
     stages_.grow();
     must_grow_ = false;
+    number_counted(lock);
   }
   for (const Stage stage : {kConnect, kWrite, kCount, kClassify}) {
     if (!ready(stage)) continue;
@@ -78,15 +79,28 @@ bool LayerPipeline::ready(Stage stage) const {
 }
 
 void LayerPipeline::finish(const Task& task) {
-  const std::scoped_lock lock(mutex_);
+  std::unique_lock lock(mutex_);
   if (task.stage >= kWrite) {
     --writing_;
     return;
   }
   (task.stage == kClassify ? classified_ : counted_)[std::size_t(task.layer)] = 1;
   while (classified_up_to_ < layers_ && classified_[std::size_t(classified_up_to_)] != 0) ++classified_up_to_;
-  for (; numbered_ < layers_ && counted_[std::size_t(numbered_)] != 0; ++numbered_)
-    must_grow_ |= stages_.number(numbered_);
+  number_counted(lock);
+}
+
+void LayerPipeline::number_counted(std::unique_lock<std::mutex>& lock) {
+  // One thread at a time, without the lock: others go on with what is ready.
+  if (numbering_) return;
+  numbering_ = true;
+  while (numbered_ < layers_ && counted_[std::size_t(numbered_)] != 0 && !must_grow_) {
+    lock.unlock();
+    const bool must_grow = stages_.number(numbered_);
+    lock.lock();
+    must_grow_ = must_grow;
+    ++numbered_;
+  }
+  numbering_ = false;
 }
 
 }  // namespace isolux::mc

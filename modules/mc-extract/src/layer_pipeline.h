@@ -26,8 +26,7 @@ class LayerPipeline {
     std::function<void(int layer)> connect;
   };
 
-  /// Classifying runs at most `ahead` layers before writing. \pre ahead >= 2.
-  LayerPipeline(int layers, int ahead, Stages stages);
+  LayerPipeline(int layers, Stages stages);
 
   /// \throw Cancelled, and what a stage throws.
   void run(const Run& run);
@@ -44,9 +43,10 @@ class LayerPipeline {
   [[nodiscard]] Next take(Task& task);
   [[nodiscard]] bool ready(Stage stage) const;
   void finish(const Task& task);
+  void number_counted(std::unique_lock<std::mutex>& lock);
 
   int layers_;
-  int ahead_;
+  int ahead_ = 2;  ///< layers that classifying may be before writing, and as many more as there are threads
   Stages stages_;
   std::array<const std::function<void(int)>*, kStages> bodies_;
   std::mutex mutex_;
@@ -55,6 +55,7 @@ class LayerPipeline {
   int classified_up_to_ = 0;
   int numbered_ = 0;
   int writing_ = 0;  ///< tasks under way that write
+  bool numbering_ = false;
   bool must_grow_ = false;
   bool failed_ = false;
 };

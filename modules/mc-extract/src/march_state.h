@@ -60,6 +60,13 @@ struct Slab {
   Counts first;
 };
 
+/// How much there is of each kind in the mesh.
+struct MeshSize {
+  std::size_t vertices = 0;
+  std::size_t edges = 0;
+  std::size_t triangles = 0;
+};
+
 enum class Connectivity : std::uint8_t {
   kIndexed,   ///< triangles of vertex numbers
   kHalfEdges  ///< numbers for mesh edges too

@@ -20,9 +20,6 @@ namespace {
 /// Slabs of a layer of bricks.
 constexpr int kLayer = BrickIndex::kHeight;
 
-/// Layers that classifying may be ahead, and as many more as there are threads.
-constexpr int kAhead = 2;
-
 VertexFrame vertex_frame(const Lattice& lattice, const LevelSet& level_set) {
   VertexFrame frame{};
   Mat3 to_normal = lattice.frame.gradient_to_world();
@@ -130,7 +127,7 @@ void RowMarch::march(const ExtractSettings& settings, const Run& run, const Bric
     grow(mesh.normals, size_.vertices, done);
     grow(mesh.triangles, size_.triangles, done);
   };
-  LayerPipeline pipeline(layer_count(), kAhead + thread_count(run),
+  LayerPipeline pipeline(layer_count(),
                          {.classify = [&](int layer) { classify_layer(layer); },
                           .count = [&](int layer) { count_layer(layer, Connectivity::kIndexed); },
                           .number =
@@ -160,17 +157,16 @@ void RowMarch::march(const ExtractSettings& settings, const Run& run, const Bric
 
 MeshSize RowMarch::count(const ExtractSettings& settings, const Run& run, const BrickIndex* index) {
   begin(settings, run, index);
-  LayerPipeline pipeline(layer_count(), kAhead + thread_count(run),
-                         {.classify = [&](int layer) { classify_layer(layer); },
-                          .count = [&](int layer) { count_layer(layer, Connectivity::kHalfEdges); },
-                          .number =
-                              [&](int layer) {
-                                number_layer(layer);
-                                return false;
-                              },
-                          .grow = {},
-                          .write = {},
-                          .connect = {}});
+  LayerPipeline pipeline(layer_count(), {.classify = [&](int layer) { classify_layer(layer); },
+                                         .count = [&](int layer) { count_layer(layer, Connectivity::kHalfEdges); },
+                                         .number =
+                                             [&](int layer) {
+                                               number_layer(layer);
+                                               return false;
+                                             },
+                                         .grow = {},
+                                         .write = {},
+                                         .connect = {}});
   pipeline.run(run);
   return size_;
 }
@@ -267,15 +263,6 @@ void RowMarch::number_layer(int layer) {
 void RowMarch::write_vertices(int layer, float* positions, float* normals) const {
   const Slabs slabs = slabs_of(layer);
   for (int k = slabs.begin; k < slabs.end; ++k) make_vertices(march_, k, frame_, positions, normals);
-}
-
-void RowMarch::write(const Run& run, float* positions, float* normals, const HalfEdgeArrays& out) const {
-  // One after the other: in turn they would drive each other's memory from the cache.
-  parallel_blocks(std::size_t(march_.nz), 1, run, "",
-                  [&](const Block& slab) { make_vertices(march_, int(slab.index), frame_, positions, normals); });
-  parallel_blocks(std::size_t(march_.nz), 1, run, "",
-                  [&](const Block& slab) { make_half_edges(march_, int(slab.index), cases(), out); });
-  link_border(run, out);
 }
 
 }  // namespace isolux::mc

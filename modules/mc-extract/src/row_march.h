@@ -4,6 +4,7 @@
 #include <isolux/mc_extract/indexed_mesh.h>
 #include <isolux/mc_extract/large_vector.h>
 
+#include <functional>
 #include <optional>
 #include <vector>
 
@@ -13,13 +14,6 @@
 #include "wide_kernels.h"
 
 namespace isolux::mc {
-
-/// How much there is of each kind in the mesh.
-struct MeshSize {
-  std::size_t vertices = 0;
-  std::size_t edges = 0;
-  std::size_t triangles = 0;
-};
 
 /// \throw InvalidInput if a mesh would have more than 2^31 triangle corners or half-edges.
 void require_countable(const MeshSize& size, float isovalue);
@@ -46,8 +40,10 @@ class RowMarch {
 
   /// For half-edges, whose kernel takes its size beforehand. First half: what there is.
   [[nodiscard]] MeshSize count(const ExtractSettings& settings, const Run& run, const BrickIndex* index);
-  /// Second half.
-  void write(const Run& run, float* positions, float* normals, const HalfEdgeArrays& out) const;
+  /// Second half. With `reach` the mesh does not hold all of it yet: reach(size) is called before more is written, one
+  /// call at a time.
+  void write(const Run& run, const std::function<void(const MeshSize&)>& reach, float* positions, float* normals,
+             const HalfEdgeArrays& out) const;
 
  private:
   /// Slabs [begin, end): a grid plane and what it owns each.
@@ -65,6 +61,9 @@ class RowMarch {
   /// Gives the slabs their first numbers: layers in rising order.
   void number_layer(int layer);
   void write_vertices(int layer, float* positions, float* normals) const;
+  void write_half_edges(int layer, const HalfEdgeArrays& out) const;
+  /// What the layers up to this one hold.
+  [[nodiscard]] MeshSize size_up_to(int layer) const;
   [[nodiscard]] const CaseTable& cases() const;
   void link_border(const Run& run, const HalfEdgeArrays& out) const;
 

@@ -31,16 +31,15 @@ TEST(LayerPipeline, PassesOnWhatAStageThrows) {
   for (const int threads : {1, 2, 4}) {
     for (const int failing : {0, 5, 19}) {
       const auto nothing = [](int) {};
-      mc::LayerPipeline pipeline(20, 3,
-                                 {.classify = nothing,
-                                  .count =
-                                      [&](int layer) {
-                                        if (layer == failing) throw InvalidInput("no");
-                                      },
-                                  .number = [](int) { return false; },
-                                  .grow = {},
-                                  .write = nothing,
-                                  .connect = nothing});
+      mc::LayerPipeline pipeline(20, {.classify = nothing,
+                                      .count =
+                                          [&](int layer) {
+                                            if (layer == failing) throw InvalidInput("no");
+                                          },
+                                      .number = [](int) { return false; },
+                                      .grow = {},
+                                      .write = nothing,
+                                      .connect = nothing});
       EXPECT_THROW(pipeline.run({.threads = threads}), InvalidInput);
     }
   }
@@ -59,21 +58,20 @@ TEST(LayerPipeline, GrowsOnlyWhileNothingIsWritten) {
       ++written;
       --writing;
     };
-    mc::LayerPipeline pipeline(200, 3,
-                               {.classify = [](int) {},
-                                .count = [](int) {},
-                                .number =
-                                    [&](int layer) {
-                                      needed = layer + 1;
-                                      return needed > room;
-                                    },
-                                .grow =
-                                    [&] {
-                                      if (writing != 0) ++wrong;
-                                      room = needed + 3;
-                                    },
-                                .write = write,
-                                .connect = write});
+    mc::LayerPipeline pipeline(200, {.classify = [](int) {},
+                                     .count = [](int) {},
+                                     .number =
+                                         [&](int layer) {
+                                           needed = layer + 1;
+                                           return needed > room;
+                                         },
+                                     .grow =
+                                         [&] {
+                                           if (writing != 0) ++wrong;
+                                           room = needed + 3;
+                                         },
+                                     .write = write,
+                                     .connect = write});
     pipeline.run({.threads = threads});
     EXPECT_EQ(wrong, 0);
     EXPECT_EQ(written, 400);
