@@ -16,8 +16,9 @@ struct MeshMemory {
   float* normals = nullptr;
 };
 
-/// Reserves memory for as much and gives it; of what the mesh held, no more than that is kept. On Linux fresh memory is
-/// marked for huge pages.
+/// Reserves memory for as much, fresh memory in huge pages, and gives the arrays, which may hold anything; of what the
+/// mesh held no more is kept than that. Their layout is OpenMesh 9's; the size of each item is asserted, the order of
+/// its parts tested against OpenMesh's own accessors.
 [[nodiscard]] MeshMemory reserve_mesh(IsoMesh& mesh, const MeshSize& size);
 
 /// Lets the mesh hold as much as this at least, up to what is reserved: OpenMesh clears what comes. Best done little by
