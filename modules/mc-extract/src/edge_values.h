@@ -34,16 +34,15 @@ struct EdgeBatch {
     const std::uint32_t first = std::uint32_t(64 * word) | std::uint32_t(j) << 16;
     std::uint32_t* place = edges.data() + count;
     count += std::popcount(crossed);
-    const auto put = [&] {
-      const int bit = std::countr_zero(crossed);
+    const auto put = [&](std::uint64_t left) {
+      const int bit = std::countr_zero(left);
       if (ahead != nullptr) hwy::Prefetch(ahead + (bit & 63));
       *place++ = first + std::uint32_t(bit);
-      crossed &= crossed - 1;
     };
     // Most words have few crossed edges: these are written whether they are there or not, as a loop's end cannot be
     // foretold.
-    for (int n = 0; n < kUsual; ++n) put();
-    while (crossed != 0) put();
+    for (int n = 0; n < kUsual; ++n, crossed &= crossed - 1) put(crossed);
+    for (; crossed != 0; crossed &= crossed - 1) put(crossed);
   }
 
  private:

@@ -127,6 +127,16 @@ void RowMarch::march(const ExtractSettings& settings, const Run& run, const Bric
     grow(mesh.normals, size_.vertices, done);
     grow(mesh.triangles, size_.triangles, done);
   };
+  // Looked up only while nothing is written: the vectors themselves change with every layer.
+  float* positions = nullptr;
+  float* normals = nullptr;
+  Triangle* triangles = nullptr;
+  const auto locate = [&] {
+    positions = reinterpret_cast<float*>(mesh.positions.data());
+    normals = reinterpret_cast<float*>(mesh.normals.data());
+    triangles = mesh.triangles.data();
+  };
+  locate();
   LayerPipeline pipeline(layer_count(),
                          {.classify = [&](int layer) { classify_layer(layer); },
                           .count = [&](int layer) { count_layer(layer, Connectivity::kIndexed); },
@@ -140,17 +150,17 @@ void RowMarch::march(const ExtractSettings& settings, const Run& run, const Bric
                                 resize();
                                 return false;
                               },
-                          .grow = resize,
-                          .write =
-                              [&](int layer) {
-                                if (!mesh.positions.empty())
-                                  write_vertices(layer, &mesh.positions[0].x, &mesh.normals[0].x);
+                          .grow =
+                              [&] {
+                                resize();
+                                locate();
                               },
+                          .write = [&](int layer) { write_vertices(layer, positions, normals); },
                           .connect =
                               [&](int layer) {
                                 const Slabs slabs = slabs_of(layer);
                                 for (int k = slabs.begin; k < slabs.end; ++k)
-                                  make_triangles(march_, k, cases(), mesh.triangles.data());
+                                  make_triangles(march_, k, cases(), triangles);
                               }});
   pipeline.run(run);
 }
