@@ -3,6 +3,9 @@
 #include <fmt/format.h>
 #include <isolux/bake/scene_file.h>
 
+#include <cmath>
+#include <cstdlib>
+
 #include "parse.h"
 
 namespace isolux {
@@ -37,6 +40,13 @@ TraceSettings TraceOptions::settings() const {
   }
   if (rays_ > 0) settings.rays = rays_;
   return settings;
+}
+
+void add_isovalue(CLI::App& command, float& isovalue) {
+  command.add_option("--iso", isovalue, "isovalue")->required()->type_name("H")->check([](const std::string& text) {
+    // What is no number at all is refused when it is converted.
+    return std::isfinite(std::strtof(text.c_str(), nullptr)) ? std::string() : text + " is not a finite number";
+  });
 }
 
 void warn_outside_range(const Volume& volume, float isovalue, const Session& session) {

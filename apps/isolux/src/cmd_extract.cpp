@@ -159,7 +159,7 @@ void add_extract_command(CLI::App& program, Session& session) {
   CLI::App& command = *program.add_subcommand("extract", "One isosurface as a mesh, with its light as vertex colours");
   const auto options = std::make_shared<Options>();
   options->volume.add_to(command);
-  command.add_option("--iso", options->isovalue, "isovalue")->required()->type_name("H");
+  add_isovalue(command, options->isovalue);
   command.add_option("-o,--output", options->output, "the mesh to write: .ply, .glb, .obj, .off or .stl")
       ->required()
       ->type_name("MESH.ply");
@@ -176,6 +176,7 @@ void add_extract_command(CLI::App& program, Session& session) {
       ->check(CLI::IsMember({"lower", "higher"}));
   command.add_flag("--cap", options->cap, "close the surface where it meets the box");
   command.add_option("--min-component", options->min_component, "leave out connected parts of fewer triangles")
+      ->check(CLI::Range(std::size_t(0), std::size_t(1) << 32))
       ->type_name("N");
   command.add_option("--normals", options->normals, "from the field's gradient (default) or from the faces")
       ->check(CLI::IsMember({"gradient", "faces"}));

@@ -110,7 +110,7 @@ void add_render_command(CLI::App& program, Session& session) {
   CLI::App& command = *program.add_subcommand("render", "A picture of one isosurface; needs no display and no GPU");
   const auto options = std::make_shared<Options>();
   options->volume.add_to(command);
-  command.add_option("--iso", options->isovalue, "isovalue")->required()->type_name("H");
+  add_isovalue(command, options->isovalue);
   command.add_option("-o,--output", options->output, "the picture to write")->required()->type_name("IMAGE.png");
   options->light.add_to(command);
   options->side.add_to(command,

@@ -80,7 +80,7 @@ CellCase make_case(int inside, CaseTable::Winding winding) {
 CaseTable::CaseTable(Winding winding) {
   for (int inside = 0; inside < 256; ++inside) {
     cases_[inside] = make_case(inside, winding);
-    counts_[inside] = cases_[inside].triangles | std::uint32_t(cases_[inside].inner_edges) << 16;
+    counts_[inside] = cases_[inside].triangles | std::uint64_t(cases_[inside].inner_edges) << 32;
   }
 }
 

@@ -35,12 +35,12 @@ class CaseTable {
   };
   explicit CaseTable(Winding winding);
   [[nodiscard]] const CellCase& operator[](unsigned inside) const { return cases_[inside]; }
-  /// The triangles of a case, and 2^16 times its inner edges: both summed at once.
-  [[nodiscard]] std::uint32_t counts(unsigned inside) const { return counts_[inside]; }
+  /// The triangles of a case, and 2^32 times its inner edges: both summed at once.
+  [[nodiscard]] std::uint64_t counts(unsigned inside) const { return counts_[inside]; }
 
  private:
   std::array<CellCase, 256> cases_;
-  std::array<std::uint32_t, 256> counts_{};
+  std::array<std::uint64_t, 256> counts_{};
 };
 
 /// The table of each winding, made once.

@@ -1,5 +1,6 @@
 #include <isolux/mc_extract/iso_extractor.h>
 
+#include <functional>
 #include <optional>
 #include <utility>
 
@@ -13,7 +14,9 @@ namespace isolux {
 class IsoExtractor::Implementation {
  public:
   Implementation(const Volume& volume, const Run& run, Index index) : volume_(&volume), march_(volume) {
-    if (index == Index::kBricks) index_.emplace(volume, run);
+    if (index != Index::kBricks) return;
+    index_.emplace(volume, run);
+    march_.keep_bytes(volume, run);
   }
 
   void extract(const ExtractSettings& settings, const Run& asked, IndexedMesh& mesh) {
@@ -31,10 +34,11 @@ class IsoExtractor::Implementation {
       return;
     }
     const mc::MeshSize size = march_.count(settings, run, index());
-    const mc::MeshMemory memory = mc::resize_mesh(mesh, size.vertices, size.edges, size.triangles);
+    const mc::MeshMemory memory = mc::reserve_mesh(mesh, size);
     if (size.triangles == 0) return;
-    march_.write_vertices(run, memory.positions, memory.normals);
-    march_.write_half_edges(run, memory.connectivity);
+    std::function<void(const mc::MeshSize&)> reach;
+    if (mesh.n_edges() < size.edges) reach = [&](const mc::MeshSize& part) { mc::reach(mesh, part); };
+    march_.write(run, reach, memory.positions, memory.normals, memory.connectivity);
     if (settings.normals == NormalKind::kFaces) mc::set_face_normals(mesh);
   }
 

@@ -10,7 +10,7 @@ namespace isolux::detail {
 
 namespace {
 constexpr std::size_t kHugePage = std::size_t(2) << 20;
-constexpr std::size_t kLarge = 2 * kHugePage;
+constexpr std::size_t kLarge = kHugePage;
 }  // namespace
 
 void* allocate_large(std::size_t bytes) {

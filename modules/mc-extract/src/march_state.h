@@ -5,6 +5,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <type_traits>
 #include <vector>
 
 #include "level_set.h"
@@ -59,6 +60,13 @@ struct Slab {
   Counts first;
 };
 
+/// How much there is of each kind in the mesh.
+struct MeshSize {
+  std::size_t vertices = 0;
+  std::size_t edges = 0;
+  std::size_t triangles = 0;
+};
+
 enum class Connectivity : std::uint8_t {
   kIndexed,   ///< triangles of vertex numbers
   kHalfEdges  ///< numbers for mesh edges too
@@ -67,6 +75,7 @@ enum class Connectivity : std::uint8_t {
 /// Views of the grid and of the extractor's buffers.
 struct MarchState {
   const float* values = nullptr;
+  const std::uint8_t* bytes = nullptr;  ///< the same, where they fit and a copy was made; 64 bytes more may be read
   int nx = 0;
   int ny = 0;
   int nz = 0;
@@ -86,8 +95,14 @@ struct MarchState {
   [[nodiscard]] std::uint64_t* row_bits(int j, int k) {
     return bits + (std::size_t(k) * std::size_t(ny) + std::size_t(j)) * std::size_t(words);
   }
-  [[nodiscard]] const float* row_values(int j, int k) const {
-    return values + (std::size_t(k) * std::size_t(ny) + std::size_t(j)) * std::size_t(nx);
+  /// Value: float, or std::uint8_t where there are bytes.
+  template <class Value>
+  [[nodiscard]] const Value* row_values(int j, int k) const {
+    const std::size_t place = (std::size_t(k) * std::size_t(ny) + std::size_t(j)) * std::size_t(nx);
+    if constexpr (std::is_same_v<Value, std::uint8_t>)
+      return bytes + place;
+    else
+      return values + place;
   }
   [[nodiscard]] std::uint32_t* slab_active(int k) const { return active + std::size_t(k) * std::size_t(ny * words); }
   [[nodiscard]] Counts* slab_rows(int k) const { return rows + std::size_t(k) * std::size_t(ny); }
@@ -108,6 +123,7 @@ struct WordBits {
   std::array<std::uint64_t, 4> here;
   std::array<std::uint64_t, 4> next;
 
+  WordBits() = default;
   WordBits(const MarchState& march, int j, int k, int word) {
     for (int r = 0; r < 4; ++r) {
       const int row = (r & 1) != 0 && j + 1 < march.ny ? j + 1 : j;

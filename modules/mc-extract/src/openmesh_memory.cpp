@@ -1,5 +1,6 @@
 #include "openmesh_memory.h"
 
+#include <algorithm>
 #include <cstdint>
 
 #ifdef __linux__
@@ -41,24 +42,31 @@ MeshMemory memory_of(IsoMesh& mesh) {
 
 }  // namespace
 
-MeshMemory resize_mesh(IsoMesh& mesh, std::size_t vertices, std::size_t edges, std::size_t faces) {
-  if (faces == 0) {
+MeshMemory reserve_mesh(IsoMesh& mesh, const MeshSize& size) {
+  if (size.triangles == 0) {
     mesh.resize(0, 0, 0);
     return {};
   }
-  if (mesh.n_vertices() == 0) {
-    // One item shows where the reserved memory lies, before anything but its first page is touched.
-    mesh.reserve(vertices, edges, faces);
-    mesh.resize(1, 1, 1);
-    const MeshMemory reserved = memory_of(mesh);
-    advise_huge_pages(reserved.connectivity.half_edges, edges * sizeof(IsoMesh::Edge));
-    advise_huge_pages(reserved.connectivity.vertex_half_edge, vertices * sizeof(IsoMesh::Vertex));
-    advise_huge_pages(reserved.connectivity.face_half_edge, faces * sizeof(IsoMesh::Face));
-    advise_huge_pages(reserved.positions, vertices * sizeof(IsoMesh::Point));
-    advise_huge_pages(reserved.normals, vertices * sizeof(IsoMesh::Normal));
+  const bool fresh = mesh.n_vertices() == 0;
+  mesh.reserve(size.vertices, size.edges, size.triangles);
+  // At least one item shows where the memory lies, before anything but its first page is touched.
+  mesh.resize(std::clamp(mesh.n_vertices(), std::size_t(1), size.vertices),
+              std::clamp(mesh.n_edges(), std::size_t(1), size.edges),
+              std::clamp(mesh.n_faces(), std::size_t(1), size.triangles));
+  const MeshMemory reserved = memory_of(mesh);
+  if (fresh) {
+    advise_huge_pages(reserved.connectivity.half_edges, size.edges * sizeof(IsoMesh::Edge));
+    advise_huge_pages(reserved.connectivity.vertex_half_edge, size.vertices * sizeof(IsoMesh::Vertex));
+    advise_huge_pages(reserved.connectivity.face_half_edge, size.triangles * sizeof(IsoMesh::Face));
+    advise_huge_pages(reserved.positions, size.vertices * sizeof(IsoMesh::Point));
+    advise_huge_pages(reserved.normals, size.vertices * sizeof(IsoMesh::Normal));
   }
-  mesh.resize(vertices, edges, faces);
-  return memory_of(mesh);
+  return reserved;
+}
+
+void reach(IsoMesh& mesh, const MeshSize& size) {
+  mesh.resize(std::max(mesh.n_vertices(), size.vertices), std::max(mesh.n_edges(), size.edges),
+              std::max(mesh.n_faces(), size.triangles));
 }
 
 }  // namespace isolux::mc

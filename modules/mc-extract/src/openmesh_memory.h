@@ -4,6 +4,7 @@
 
 #include <cstddef>
 
+#include "march_state.h"
 #include "wide_kernels.h"
 
 namespace isolux::mc {
@@ -15,9 +16,13 @@ struct MeshMemory {
   float* normals = nullptr;
 };
 
-/// Gives the mesh this size without emptying it first (OpenMesh then fills only what is new), fresh memory in huge
-/// pages, and returns its arrays, which may hold anything. Their layout is OpenMesh 9's; the size of each item is
-/// asserted, the order of its parts tested against OpenMesh's own accessors.
-[[nodiscard]] MeshMemory resize_mesh(IsoMesh& mesh, std::size_t vertices, std::size_t edges, std::size_t faces);
+/// Reserves memory for as much, fresh memory in huge pages, and gives the arrays, which may hold anything; of what the
+/// mesh held no more is kept than that. Their layout is OpenMesh 9's; the size of each item is asserted, the order of
+/// its parts tested against OpenMesh's own accessors.
+[[nodiscard]] MeshMemory reserve_mesh(IsoMesh& mesh, const MeshSize& size);
+
+/// Lets the mesh hold as much as this at least, up to what is reserved: OpenMesh clears what comes. Best done little by
+/// little, each just before it is written, while it is in the cache; others may write what there was meanwhile.
+void reach(IsoMesh& mesh, const MeshSize& size);
 
 }  // namespace isolux::mc

@@ -5,10 +5,13 @@
 #include <isolux/core/parallel.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <limits>
 #include <utility>
+
+#include "layer_pipeline.h"
 
 namespace isolux::mc {
 
@@ -43,9 +46,9 @@ VertexFrame vertex_frame(const Lattice& lattice, const LevelSet& level_set) {
 template <class T>
 void grow(LargeVector<T>& vector, std::size_t size, double done) {
   if (vector.capacity() < size) {
-    constexpr double kMost = 64.0;
+    constexpr double kMost = 256.0;
     LargeVector<T> larger;
-    larger.reserve(std::max(vector.capacity() * 3 / 2, std::size_t(double(size) * std::min(1.5 / done, kMost))));
+    larger.reserve(std::max(vector.capacity() * 3 / 2, std::size_t(double(size) * std::min(3.0 / done, kMost))));
     larger.resize(vector.size());
     std::copy(vector.begin(), vector.end(), larger.begin());
     vector.swap(larger);
@@ -88,28 +91,28 @@ RowMarch::RowMarch(const Volume& volume, double dense)
   march_.slabs = slabs_.data();
 }
 
-int RowMarch::layer_count() const { return (march_.nz + kLayer - 1) / kLayer; }
-
-/// Two layers, or 2 MB, a thread; where threads wait for each other twice as many, for waking them costs.
-int RowMarch::layers_at_once(const Run& run) const {
-  const std::size_t bytes = sizeof(float) * std::size_t(march_.nx) * std::size_t(march_.ny) * kLayer;
-  const int threads = thread_count(run);
-  return (threads > 1 ? 2 * threads : 1) * std::max(2, int((std::size_t(2) << 20) / bytes));
+void RowMarch::keep_bytes(const Volume& volume, const Run& run) {
+  const auto values = volume.values.values();
+  constexpr std::size_t kReadBeyond = 64;
+  bytes_.resize(values.size() + kReadBeyond);
+  std::atomic<bool> fit = true;
+  parallel_blocks(values.size(), std::size_t(1) << 18, run, "", [&](const Block& block) {
+    if (fit && !to_bytes(&values[block.begin], block.end - block.begin, &bytes_[block.begin])) fit = false;
+  });
+  if (fit)
+    march_.bytes = bytes_.data();
+  else
+    bytes_ = {};
 }
+
+int RowMarch::layer_count() const { return (march_.nz + kLayer - 1) / kLayer; }
 
 const CaseTable& RowMarch::cases() const {
   return case_table(mirrored_ ? CaseTable::Winding::kInwards : CaseTable::Winding::kOutwards);
 }
 
-RowMarch::Slabs RowMarch::slabs_of(Layers layers) const {
-  return {.begin = layers.begin * kLayer, .end = std::min(layers.end * kLayer, march_.nz)};
-}
-
-template <class Body>
-void RowMarch::for_each_slab(Layers layers, const Run& run, const Body& body) const {
-  const Slabs slabs = slabs_of(layers);
-  parallel_blocks(std::size_t(slabs.end - slabs.begin), 1, run, "",
-                  [&](const Block& block) { body(slabs.begin + int(block.begin)); });
+RowMarch::Slabs RowMarch::slabs_of(int layer) const {
+  return {.begin = layer * kLayer, .end = std::min((layer + 1) * kLayer, march_.nz)};
 }
 
 void RowMarch::march(const ExtractSettings& settings, const Run& run, const BrickIndex* index, IndexedMesh& mesh) {
@@ -117,54 +120,64 @@ void RowMarch::march(const ExtractSettings& settings, const Run& run, const Bric
   mesh.positions.clear();
   mesh.normals.clear();
   mesh.triangles.clear();
-  const int layers = layer_count();
-  const int step = layers_at_once(run);
-  // A slab is counted by the bits of the next plane too, and its cells use the next slab's numbers: classifying runs a
-  // layer ahead, triangles a layer behind.
-  int classified = std::min(step + 1, layers);
-  int connected = 0;
-  classify({0, classified}, run);
-  for (int first = 0; first < layers; first += step) {
-    const Layers here{first, std::min(first + step, layers)};
-    count_layers(here, run, Connectivity::kIndexed);
-    number(here);
-    const double done = double(here.end) / layers;
+  int numbered = 0;
+  const auto resize = [&] {
+    const double done = double(numbered) / layer_count();
     grow(mesh.positions, size_.vertices, done);
     grow(mesh.normals, size_.vertices, done);
     grow(mesh.triangles, size_.triangles, done);
-    const Layers behind{connected, here.end == layers ? layers : here.end - 1};
-    const Layers ahead{classified, std::min(here.end + step + 1, layers)};
-    write_and_classify(here, behind, ahead, run, mesh);
-    connected = behind.end;
-    classified = ahead.end;
-  }
-}
-
-void RowMarch::write_and_classify(Layers here, Layers behind, Layers ahead, const Run& run, IndexedMesh& mesh) {
-  // What these three do does not touch: one loop keeps threads busier than three.
-  const Slabs vertices = slabs_of(here);
-  const Slabs triangles = slabs_of(behind);
-  const int before_triangles = vertices.end - vertices.begin;
-  const int before_layers = before_triangles + triangles.end - triangles.begin;
-  parallel_blocks(std::size_t(before_layers + ahead.end - ahead.begin), 1, run, "", [&](const Block& block) {
-    const int task = int(block.begin);
-    if (task < before_triangles) {
-      if (mesh.positions.empty()) return;
-      make_vertices(march_, vertices.begin + task, frame_, &mesh.positions[0].x, &mesh.normals[0].x);
-    } else if (task < before_layers) {
-      make_triangles(march_, triangles.begin + task - before_triangles, cases(), mesh.triangles.data());
-    } else {
-      classify_layer(ahead.begin + task - before_layers);
-    }
-  });
+  };
+  // Looked up only while nothing is written: the vectors themselves change with every layer.
+  float* positions = nullptr;
+  float* normals = nullptr;
+  Triangle* triangles = nullptr;
+  const auto locate = [&] {
+    positions = reinterpret_cast<float*>(mesh.positions.data());
+    normals = reinterpret_cast<float*>(mesh.normals.data());
+    triangles = mesh.triangles.data();
+  };
+  locate();
+  LayerPipeline pipeline(layer_count(),
+                         {.classify = [&](int layer) { classify_layer(layer); },
+                          .count = [&](int layer) { count_layer(layer, Connectivity::kIndexed); },
+                          .number =
+                              [&](int layer) {
+                                number_layer(layer);
+                                numbered = layer + 1;
+                                if (size_.vertices > std::min(mesh.positions.capacity(), mesh.normals.capacity()) ||
+                                    size_.triangles > mesh.triangles.capacity())
+                                  return true;
+                                resize();
+                                return false;
+                              },
+                          .grow =
+                              [&] {
+                                resize();
+                                locate();
+                              },
+                          .write = [&](int layer) { write_vertices(layer, positions, normals); },
+                          .connect =
+                              [&](int layer) {
+                                const Slabs slabs = slabs_of(layer);
+                                for (int k = slabs.begin; k < slabs.end; ++k)
+                                  make_triangles(march_, k, cases(), triangles);
+                              }});
+  pipeline.run(run);
 }
 
 MeshSize RowMarch::count(const ExtractSettings& settings, const Run& run, const BrickIndex* index) {
   begin(settings, run, index);
-  const Layers all{0, layer_count()};
-  classify(all, run);
-  count_layers(all, run, Connectivity::kHalfEdges);
-  number(all);
+  LayerPipeline pipeline(layer_count(), {.classify = [&](int layer) { classify_layer(layer); },
+                                         .count = [&](int layer) { count_layer(layer, Connectivity::kHalfEdges); },
+                                         .number =
+                                             [&](int layer) {
+                                               number_layer(layer);
+                                               return false;
+                                             },
+                                         .grow = {},
+                                         .write = {},
+                                         .connect = {}});
+  pipeline.run(run);
   return size_;
 }
 
@@ -182,14 +195,9 @@ void RowMarch::begin(const ExtractSettings& settings, const Run& run, const Bric
   if (active_words_.share() > dense_) index_ = nullptr;
 }
 
-void RowMarch::classify(Layers layers, const Run& run) {
-  parallel_blocks(std::size_t(layers.end - layers.begin), 1, run, "",
-                  [&](const Block& block) { classify_layer(layers.begin + int(block.begin)); });
-}
-
 void RowMarch::classify_layer(int layer) {
   if (index_ == nullptr) {
-    const Slabs slabs = slabs_of({layer, layer + 1});
+    const Slabs slabs = slabs_of(layer);
     for (int k = slabs.begin; k < slabs.end; ++k)
       for (int j = 0; j < march_.ny; ++j) classify_row(march_, j, k);
     return;
@@ -224,29 +232,26 @@ void RowMarch::classify_brick_row(int row, int layer) {
   }
 }
 
-void RowMarch::count_layers(Layers layers, const Run& run, Connectivity connectivity) {
+void RowMarch::count_layer(int layer, Connectivity connectivity) {
+  const Slabs slabs = slabs_of(layer);
   if (index_ == nullptr) {
-    for_each_slab(layers, run, [&](int k) { count_slab(march_, k, nullptr, 0, connectivity); });
+    for (int k = slabs.begin; k < slabs.end; ++k) count_slab(march_, k, nullptr, 0, connectivity);
     return;
   }
-  parallel_blocks(std::size_t(layers.end - layers.begin), 1, run, "", [&](const Block& block) {
-    const int layer = layers.begin + int(block.begin);
-    std::vector<std::uint32_t> candidates;
-    for (int row = 0; row < index_->rows(); ++row) {
-      if (!active_words_.row_is_active(row, layer)) continue;
-      for (int j = row * kLayer; j < std::min((row + 1) * kLayer, march_.ny); ++j)
-        for (int word = 0; word < march_.words; ++word)
-          if (active_words_.own(word, row, layer) != 0) candidates.push_back(pack_word(j, word));
-    }
-    candidates.push_back(0);  // so that data() is something even where nothing is a candidate
-    const Slabs slabs = slabs_of({layer, layer + 1});
-    for (int k = slabs.begin; k < slabs.end; ++k)
-      count_slab(march_, k, candidates.data(), candidates.size() - 1, connectivity);
-  });
+  std::vector<std::uint32_t> candidates;
+  for (int row = 0; row < index_->rows(); ++row) {
+    if (!active_words_.row_is_active(row, layer)) continue;
+    for (int j = row * kLayer; j < std::min((row + 1) * kLayer, march_.ny); ++j)
+      for (int word = 0; word < march_.words; ++word)
+        if (active_words_.own(word, row, layer) != 0) candidates.push_back(pack_word(j, word));
+  }
+  candidates.push_back(0);  // so that data() is something even where nothing is a candidate
+  for (int k = slabs.begin; k < slabs.end; ++k)
+    count_slab(march_, k, candidates.data(), candidates.size() - 1, connectivity);
 }
 
-void RowMarch::number(Layers layers) {
-  const Slabs slabs = slabs_of(layers);
+void RowMarch::number_layer(int layer) {
+  const Slabs slabs = slabs_of(layer);
   for (int k = slabs.begin; k < slabs.end; ++k) {
     Slab& slab = slabs_[std::size_t(k)];
     const Counts& total = slab.total;
@@ -265,13 +270,9 @@ void RowMarch::number(Layers layers) {
   require_countable(size_, march_.isovalue);
 }
 
-void RowMarch::write_vertices(const Run& run, float* positions, float* normals) const {
-  for_each_slab({0, layer_count()}, run, [&](int k) { make_vertices(march_, k, frame_, positions, normals); });
-}
-
-void RowMarch::write_half_edges(const Run& run, const HalfEdgeArrays& out) const {
-  for_each_slab({0, layer_count()}, run, [&](int k) { make_half_edges(march_, k, cases(), out); });
-  link_border(run, out);
+void RowMarch::write_vertices(int layer, float* positions, float* normals) const {
+  const Slabs slabs = slabs_of(layer);
+  for (int k = slabs.begin; k < slabs.end; ++k) make_vertices(march_, k, frame_, positions, normals);
 }
 
 }  // namespace isolux::mc

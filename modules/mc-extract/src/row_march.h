@@ -4,6 +4,7 @@
 #include <isolux/mc_extract/indexed_mesh.h>
 #include <isolux/mc_extract/large_vector.h>
 
+#include <functional>
 #include <optional>
 #include <vector>
 
@@ -13,13 +14,6 @@
 #include "wide_kernels.h"
 
 namespace isolux::mc {
-
-/// How much there is of each kind in the mesh.
-struct MeshSize {
-  std::size_t vertices = 0;
-  std::size_t edges = 0;
-  std::size_t triangles = 0;
-};
 
 /// \throw InvalidInput if a mesh would have more than 2^31 triangle corners or half-edges.
 void require_countable(const MeshSize& size, float isovalue);
@@ -37,42 +31,40 @@ class RowMarch {
   /// \throw InvalidInput for volumes whose planes are beyond 32-bit offsets.
   explicit RowMarch(const Volume& volume, double dense = kDense);
 
+  /// Copies the volume to bytes if all values fit, a quarter of its memory: what is read after that, in place of it.
+  void keep_bytes(const Volume& volume, const Run& run);
+
   /// The whole way, a few layers at a time, so that values and bits are still in the cache where they are used again.
   /// The mesh's memory is used again and grows as needed.
   void march(const ExtractSettings& settings, const Run& run, const BrickIndex* index, IndexedMesh& mesh);
 
   /// For half-edges, whose kernel takes its size beforehand. First half: what there is.
   [[nodiscard]] MeshSize count(const ExtractSettings& settings, const Run& run, const BrickIndex* index);
-  /// Second half.
-  void write_vertices(const Run& run, float* positions, float* normals) const;
-  void write_half_edges(const Run& run, const HalfEdgeArrays& out) const;
+  /// Second half. With `reach` the mesh does not hold all of it yet: reach(size) is called before more is written, one
+  /// call at a time.
+  void write(const Run& run, const std::function<void(const MeshSize&)>& reach, float* positions, float* normals,
+             const HalfEdgeArrays& out) const;
 
  private:
-  /// Layers [begin, end) of bricks' height.
-  struct Layers {
-    int begin;
-    int end;
-  };
   /// Slabs [begin, end): a grid plane and what it owns each.
   struct Slabs {
     int begin;
     int end;
   };
   void begin(const ExtractSettings& settings, const Run& run, const BrickIndex* index);
-  void classify(Layers layers, const Run& run);
+  // A layer is as many slabs as a brick is high.
+  [[nodiscard]] int layer_count() const;
+  [[nodiscard]] Slabs slabs_of(int layer) const;
   void classify_layer(int layer);
   void classify_brick_row(int row, int layer);
-  void count_layers(Layers layers, const Run& run, Connectivity connectivity);
+  void count_layer(int layer, Connectivity connectivity);
   /// Gives the slabs their first numbers: layers in rising order.
-  void number(Layers layers);
-  void write_and_classify(Layers here, Layers behind, Layers ahead, const Run& run, IndexedMesh& mesh);
+  void number_layer(int layer);
+  void write_vertices(int layer, float* positions, float* normals) const;
+  void write_half_edges(int layer, const HalfEdgeArrays& out) const;
+  /// What the layers up to this one hold.
+  [[nodiscard]] MeshSize size_up_to(int layer) const;
   [[nodiscard]] const CaseTable& cases() const;
-  [[nodiscard]] int layer_count() const;
-  [[nodiscard]] int layers_at_once(const Run& run) const;
-  [[nodiscard]] Slabs slabs_of(Layers layers) const;
-  /// body(k) for every slab of the layers, a slab a task.
-  template <class Body>
-  void for_each_slab(Layers layers, const Run& run, const Body& body) const;
   void link_border(const Run& run, const HalfEdgeArrays& out) const;
 
   Lattice lattice_;
@@ -80,6 +72,7 @@ class RowMarch {
   MarchState march_;
   VertexFrame frame_{};
   bool mirrored_ = false;
+  LargeVector<std::uint8_t> bytes_;
   LargeVector<std::uint64_t> bits_;
   LargeVector<Counts> rows_;
   LargeVector<std::uint32_t> active_;

@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <bit>
-#include <limits>
 
 #include "wide_kernels.h"
 
@@ -16,95 +15,6 @@ namespace HWY_NAMESPACE {
 namespace {
 
 namespace hn = hwy::HWY_NAMESPACE;
-
-using Floats = hn::ScalableTag<float>;
-
-/// The inside bits of one vector of values.
-template <class Vector>
-std::uint64_t inside_bits(const Floats d, const Vector value, const Vector isovalue, OuterSide outer) {
-  const auto inside = outer == OuterSide::kLower ? hn::Ge(value, isovalue) : hn::Le(value, isovalue);
-  alignas(8) std::uint8_t bytes[8] = {};
-  hn::StoreMaskBits(d, inside, bytes);
-  if (hn::Lanes(d) <= 8) return bytes[0];
-  std::uint64_t bits = 0;
-  for (std::size_t b = 0; b < hn::Lanes(d) / 8; ++b) bits |= std::uint64_t(bytes[b]) << (8 * b);
-  return bits;
-}
-
-/// The inside bits of up to 64 values.
-std::uint64_t classify_word(const MarchState& march, const float* values, int count) {
-  const Floats d;
-  const int lanes = int(hn::Lanes(d));
-  const auto isovalue = hn::Set(d, march.isovalue);
-  std::uint64_t word = 0;
-  int i = 0;
-  for (; i + lanes <= count; i += lanes) word |= inside_bits(d, hn::LoadU(d, values + i), isovalue, march.outer) << i;
-  for (; i < count; ++i) {
-    const bool inside = march.outer == OuterSide::kLower ? values[i] >= march.isovalue : values[i] <= march.isovalue;
-    word |= std::uint64_t(inside) << i;
-  }
-  return word;
-}
-
-void classify_row_wide(MarchState& march, int j, int k) {
-  const float* values = march.row_values(j, k);
-  std::uint64_t* bits = march.row_bits(j, k);
-  for (int word = 0; word < march.words; ++word)
-    bits[word] = classify_word(march, values + 64 * word, std::min(64, march.nx - 64 * word));
-}
-
-void classify_bricks_wide(MarchState& march, const BrickRows& rows, int word, unsigned active, std::uint64_t uniform) {
-  const int count = std::min(64, march.nx - 64 * word);
-  for (int k = rows.first_plane; k < rows.last_plane; ++k) {
-    for (int j = rows.first_row; j < rows.last_row; ++j) {
-      const float* values = march.row_values(j, k) + 64 * word;
-      std::uint64_t bits = uniform;
-      for (unsigned left = active; left != 0; left &= left - 1) {
-        const int first = 16 * std::countr_zero(left);
-        bits |= classify_word(march, values + first, std::min(16, count - first)) << first;
-      }
-      march.row_bits(j, k)[word] = bits;
-    }
-  }
-}
-
-void find_range_wide(const Volume& volume, const Index3& first, const Index3& last, float& low, float& high) {
-  const Floats d;
-  const int lanes = int(hn::Lanes(d));
-  const Lattice& lattice = volume.lattice();
-  const float* values = volume.values.values().data();
-  constexpr float kInfinity = std::numeric_limits<float>::infinity();
-  auto lowest = hn::Set(d, kInfinity);
-  auto highest = hn::Set(d, -kInfinity);
-  auto odd = hn::MaskFromVec(hn::Zero(d));
-  low = kInfinity;
-  high = -kInfinity;
-  const int count = last.x - first.x + 1;
-  bool odd_tail = false;
-  for (int k = first.z; k <= last.z; ++k) {
-    for (int j = first.y; j <= last.y; ++j) {
-      const float* row = values + lattice.offset(first.x, j, k);
-      int i = 0;
-      for (; i + lanes <= count; i += lanes) {
-        const auto value = hn::LoadU(d, row + i);
-        lowest = hn::Min(lowest, value);
-        highest = hn::Max(highest, value);
-        odd = hn::Or(odd, hn::Ne(value, value));
-      }
-      for (; i < count; ++i) {
-        low = std::min(low, row[i]);
-        high = std::max(high, row[i]);
-        odd_tail |= row[i] != row[i];  // NOLINT(misc-redundant-expression): true of NaN alone
-      }
-    }
-  }
-  low = std::min(low, hn::GetLane(hn::MinOfLanes(d, lowest)));
-  high = std::max(high, hn::GetLane(hn::MaxOfLanes(d, highest)));
-  if (odd_tail || !hn::AllFalse(d, odd)) {
-    low = -kInfinity;
-    high = kInfinity;
-  }
-}
 
 std::uint32_t ones(std::uint64_t bits) { return std::uint32_t(std::popcount(bits)); }
 
@@ -132,51 +42,114 @@ void count_word(const MarchState& march, int j, int k, int word, const WordBits&
   }
 }
 
-/// Lists the mixed cells of one word and adds what they hold.
-std::uint32_t list_cells(const WordBits& bits, std::uint64_t mixed, const CaseTable& cases, std::uint8_t* list,
-                         Counts& counts) {
-  const std::uint32_t count = ones(mixed);
-  std::uint32_t held = 0;
-  for (std::uint32_t n = 0; n < count; ++n, mixed &= mixed - 1) {
-    const unsigned inside = bits.corners(std::countr_zero(mixed));
-    list[n] = std::uint8_t(inside);
-    held += cases.counts(inside);
+#if HWY_ARCH_X86 && HWY_TARGET <= HWY_AVX3  // wider targets have lower numbers
+
+/// Writes the cases of one word's mixed cells, and up to 64 bytes. Gives how many there are.
+std::uint32_t list_cells(const WordBits& bits, std::uint64_t mixed, std::uint8_t* list) {
+  // Each corner's bits of the mixed cells, drawn together, are a mask of bytes: no cell is looked at by itself.
+  const hn::FixedTag<std::uint8_t, 64> d;
+  auto inside = hn::Zero(d);
+  const auto add = [&](std::uint64_t row, int corner) HWY_ATTR {
+    const std::uint64_t drawn = _pext_u64(row, mixed);
+    const auto mask = hn::LoadMaskBits(d, reinterpret_cast<const std::uint8_t*>(&drawn));
+    inside = hn::Or(inside, hn::IfThenElseZero(mask, hn::Set(d, std::uint8_t(1 << corner))));
+  };
+  for (int r = 0; r < 4; ++r) {
+    add(bits.here[r], 2 * r);
+    add(bits.next[r], 2 * r + 1);
   }
-  counts.triangle += held & 0xffff;
-  counts.inner += held >> 16;
+  hn::StoreU(inside, d, list);
+  return ones(mixed);
+}
+
+#else
+
+std::uint32_t list_cells(const WordBits& bits, std::uint64_t mixed, std::uint8_t* list) {
+  const std::uint32_t count = ones(mixed);
+  for (std::uint32_t n = 0; n < count; ++n, mixed &= mixed - 1)
+    list[n] = std::uint8_t(bits.corners(std::countr_zero(mixed)));
   return count;
 }
 
-/// Visits the words of a row that may hold anything: nearly all hold nothing, and vectors tell that of several at once.
-template <class Visit>
-void visit_row(const MarchState& march, int j, int k, const Visit& visit) {
-  const hn::ScalableTag<std::uint64_t> d;
-  const int lanes = int(hn::Lanes(d));
-  const int upper_row = std::min(j + 1, march.ny - 1);
-  const int upper_plane = std::min(k + 1, march.nz - 1);
-  const std::uint64_t* rows[4] = {march.row_bits(j, k), march.row_bits(upper_row, k), march.row_bits(j, upper_plane),
-                                  march.row_bits(upper_row, upper_plane)};
-  int word = 0;
-  for (; word + lanes <= march.words; word += lanes) {
-    const auto load = [&](int row, int offset) HWY_ATTR { return hn::LoadU(d, rows[row] + word + offset); };
-    const auto any = [&](int offset) HWY_ATTR {
-      return hn::Or(hn::Or(load(0, offset), load(1, offset)), hn::Or(load(2, offset), load(3, offset)));
-    };
-    const auto all = [&](int offset) HWY_ATTR {
-      return hn::And(hn::And(load(0, offset), load(1, offset)), hn::And(load(2, offset), load(3, offset)));
-    };
-    // After a row's last word comes the next row's: it says too much at most of a grid point that has no cell.
-    const auto next = [&](auto here, auto after)
-                          HWY_ATTR { return hn::Or(hn::ShiftRight<1>(here), hn::ShiftLeft<63>(after)); };
-    const auto any_here = any(0);
-    const auto all_here = all(0);
-    const auto differing =
-        hn::AndNot(hn::And(all_here, next(all_here, all(1))), hn::Or(any_here, next(any_here, any(1))));
-    const auto uniform = hn::Eq(differing, hn::Zero(d));
-    if (hn::AllTrue(d, uniform)) continue;
-    for (int n = 0; n < lanes; ++n) visit(j, word + n);
+#endif
+
+/// What the listed cells hold: triangles, and inner edges.
+void count_cells(const CaseTable& cases, const std::uint8_t* list, std::uint32_t count, Counts& counts) {
+  // Two sums at once, as each waits for the one before.
+  std::uint64_t held[2] = {0, 0};
+  std::uint32_t n = 0;
+  for (; n + 2 <= count; n += 2) {
+    held[0] += cases.counts(list[n]);
+    held[1] += cases.counts(list[n + 1]);
   }
-  for (; word < march.words; ++word) visit(j, word);
+  if (n < count) held[0] += cases.counts(list[n]);
+  const std::uint64_t sum = held[0] + held[1];
+  counts.triangle += std::uint32_t(sum & 0xffffffff);
+  counts.inner += std::uint32_t(sum >> 32);
+}
+
+/// The bits of a vector of words.
+struct VectorBits {
+  static constexpr int kMost = HWY_MAX_BYTES / 8;
+  alignas(HWY_MAX_BYTES) std::uint64_t here[4][kMost];
+  alignas(HWY_MAX_BYTES) std::uint64_t next[4][kMost];
+
+  [[nodiscard]] HWY_INLINE WordBits word(int lane) const {
+    WordBits bits;
+    for (int r = 0; r < 4; ++r) {
+      bits.here[r] = here[r][lane];
+      bits.next[r] = next[r][lane];
+    }
+    return bits;
+  }
+};
+
+/// Calls visit(row, word, bits) for the words of slab k that may hold anything: most hold nothing, and vectors tell
+/// that of several at once. Rows lie one after the other, so vectors go on over their ends.
+template <class Visit>
+HWY_INLINE void visit_slab(const MarchState& march, int k, const Visit& visit) {
+  const hn::ScalableTag<std::uint64_t> d;
+  const std::ptrdiff_t lanes = std::ptrdiff_t(hn::Lanes(d));
+  const std::ptrdiff_t row = march.words;
+  const std::ptrdiff_t plane = row * march.ny;
+  // On the last row and plane, upper neighbours are not where they are elsewhere.
+  const std::ptrdiff_t end = k + 1 < march.nz ? plane - row : 0;
+  const std::uint64_t* first = march.row_bits(0, k);
+  const std::uint64_t* rows[4] = {first, first + row, first + plane, first + plane + row};
+  int j = 0;
+  std::ptrdiff_t at = 0;
+  std::ptrdiff_t row_begin = 0;
+  const auto word_at = [&](std::ptrdiff_t place) HWY_ATTR {
+    for (; place >= row_begin + row; row_begin += row) ++j;
+    return int(place - row_begin);
+  };
+  for (; at + lanes <= end; at += lanes) {
+    VectorBits bits;
+    auto any = hn::Zero(d);
+    auto all = hn::Set(d, ~std::uint64_t(0));
+    for (int r = 0; r < 4; ++r) {
+      const auto here = hn::LoadU(d, rows[r] + at);
+      // After a row's last word comes the next row's: it says too much at most of a grid point that has no cell.
+      const auto next = hn::Or(hn::ShiftRight<1>(here), hn::ShiftLeft<63>(hn::LoadU(d, rows[r] + at + 1)));
+      any = hn::Or(any, hn::Or(here, next));
+      all = hn::And(all, hn::And(here, next));
+      hn::Store(here, d, bits.here[r]);
+      hn::Store(next, d, bits.next[r]);
+    }
+    const auto mixed = hn::Ne(hn::AndNot(all, any), hn::Zero(d));
+    if (hn::AllFalse(d, mixed)) continue;
+    alignas(8) std::uint8_t lane_bits[8] = {};
+    hn::StoreMaskBits(d, mixed, lane_bits);
+    for (unsigned left = lane_bits[0]; left != 0; left &= left - 1) {
+      const int lane = std::countr_zero(left);
+      const int word = word_at(at + lane);
+      visit(j, word, bits.word(lane));
+    }
+  }
+  for (; at < plane; ++at) {
+    const int word = word_at(at);
+    visit(j, word, WordBits(march, j, k, word));
+  }
 }
 
 template <Connectivity kConnectivity>
@@ -189,28 +162,37 @@ void count_slab_wide(MarchState& march, int k, const std::uint32_t* candidates, 
   list.rows.clear();
   std::uint32_t found = 0;
   std::uint32_t cells = 0;
+  std::uint32_t counted = 0;
   int last_row = -1;
-  const auto visit = [&](int j, int word) HWY_ATTR {
-    const WordBits bits(march, j, k, word);
+  const auto visit = [&](int j, int word, const WordBits& bits) HWY_ATTR {
     const auto& [a, b, c, d] = bits.here;
     const std::uint64_t mixed = bits.mixed(march.cell_mask(word));
     const std::uint64_t differing = ((a | b | c | d) & ~(a & b & c & d)) | mixed;
     if (differing == 0) return;
-    if (j != last_row) rows[j] = counts;
-    last_row = j;
+    if (j != last_row) {
+      count_cells(cases, list.cases.data() + counted, cells - counted, counts);
+      counted = cells;
+      rows[j] = counts;
+      last_row = j;
+    }
     active[found++] = pack_word(j, word);
     count_word<kConnectivity>(march, j, k, word, bits, counts);
     if (mixed == 0 || j + 1 >= march.ny || k + 1 >= march.nz) return;
     if (list.rows.empty() || list.rows.back().row != j) list.rows.push_back({.row = j, .cells = 0});
-    const std::uint32_t count = list_cells(bits, mixed, cases, list.room(cells, 64), counts);
+    const std::uint32_t count = list_cells(bits, mixed, list.room(cells, 64));
     list.rows.back().cells += count;
     cells += count;
   };
   if (candidates != nullptr) {
-    for (std::size_t n = 0; n < candidate_count; ++n) visit(row_of(candidates[n]), word_of(candidates[n]));
+    for (std::size_t n = 0; n < candidate_count; ++n) {
+      const int j = row_of(candidates[n]);
+      const int word = word_of(candidates[n]);
+      visit(j, word, WordBits(march, j, k, word));
+    }
   } else {
-    for (int j = 0; j < march.ny; ++j) visit_row(march, j, k, visit);
+    visit_slab(march, k, visit);
   }
+  count_cells(cases, list.cases.data() + counted, cells - counted, counts);
   march.slabs[k].active_words = found;
   march.slabs[k].total = counts;
 }
@@ -231,21 +213,8 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace isolux::mc {
 
-HWY_EXPORT(classify_row_wide);
-HWY_EXPORT(classify_bricks_wide);
-HWY_EXPORT(find_range_wide);
 HWY_EXPORT(count_slab_indexed);
 HWY_EXPORT(count_slab_half_edges);
-
-void classify_row(MarchState& march, int j, int k) { HWY_DYNAMIC_DISPATCH(classify_row_wide)(march, j, k); }
-
-void classify_bricks(MarchState& march, const BrickRows& rows, int word, unsigned active, std::uint64_t uniform) {
-  HWY_DYNAMIC_DISPATCH(classify_bricks_wide)(march, rows, word, active, uniform);
-}
-
-void find_range(const Volume& volume, const Index3& first, const Index3& last, float& low, float& high) {
-  HWY_DYNAMIC_DISPATCH(find_range_wide)(volume, first, last, low, high);
-}
 
 void count_slab(MarchState& march, int k, const std::uint32_t* candidates, std::size_t candidate_count,
                 Connectivity connectivity) {

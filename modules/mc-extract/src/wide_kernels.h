@@ -29,6 +29,9 @@ void classify_bricks(MarchState& march, const BrickRows& rows, int word, unsigne
 /// one of them is NaN.
 void find_range(const Volume& volume, const Index3& first, const Index3& last, float& low, float& high);
 
+/// Copies values that are whole numbers from 0 to 255, none of them -0, to bytes; false if one is not.
+[[nodiscard]] bool to_bytes(const float* values, std::size_t count, std::uint8_t* bytes);
+
 /// Finds the words of slab k that hold anything, among `candidates` (packed, rising) or all if there are
 /// none given, and counts what its rows hold.
 void count_slab(MarchState& march, int k, const std::uint32_t* candidates, std::size_t candidate_count,

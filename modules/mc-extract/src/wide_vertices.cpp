@@ -33,15 +33,38 @@ struct Ends {
   F low, high;
 };
 
+/// A vector of copied values, or of each of the two or four that lie side by side for every edge.
+HWY_INLINE F one(const float* values) { return hn::LoadU(kF, values); }
+HWY_INLINE void two(const float* values, F& a, F& b) { hn::LoadInterleaved2(kF, values, a, b); }
+HWY_INLINE void four(const float* values, F& a, F& b, F& c, F& d) { hn::LoadInterleaved4(kF, values, a, b, c, d); }
+
+HWY_INLINE F low_byte(I v) { return hn::ConvertTo(kF, hn::And(v, hn::Set(kI, 255))); }
+HWY_INLINE F one(const std::uint8_t* values) {
+  return hn::ConvertTo(kF, hn::PromoteTo(kI, hn::LoadU(hn::Rebind<std::uint8_t, Ints>(), values)));
+}
+HWY_INLINE void two(const std::uint8_t* values, F& a, F& b) {
+  const hn::Rebind<std::uint16_t, Ints> d16;
+  const I pairs = hn::PromoteTo(kI, hn::LoadU(d16, reinterpret_cast<const std::uint16_t*>(values)));
+  a = low_byte(pairs);
+  b = low_byte(hn::ShiftRight<8>(pairs));
+}
+HWY_INLINE void four(const std::uint8_t* values, F& a, F& b, F& c, F& d) {
+  const I fours = hn::LoadU(kI, reinterpret_cast<const std::int32_t*>(values));
+  a = low_byte(fours);
+  b = low_byte(hn::ShiftRight<8>(fours));
+  c = low_byte(hn::ShiftRight<16>(fours));
+  d = low_byte(hn::ShiftRight<24>(fours));
+}
+
 /// The edges of one slab along kAxis, a vector at a time.
-template <int kAxis>
+template <int kAxis, class Value>
 class VertexMaker {
  public:
   VertexMaker(const MarchState& march, int k, const VertexFrame& frame) : march_(march), frame_(frame), k_(k) {}
 
   void flush(EdgeBatch& batch) {
     const int lanes = int(hn::Lanes(kF));
-    constexpr int kStep = EdgeValues<kAxis>::kCapacity;
+    constexpr int kStep = EdgeValues<kAxis, Value>::kCapacity;
     for (int first = 0; first < batch.count; first += kStep) {
       const std::uint32_t* edges = batch.edges.data() + first;
       const int end = std::min(kStep, batch.count - first);
@@ -84,7 +107,7 @@ class VertexMaker {
     Ends x;
     Ends y;
     Ends z;
-    hn::LoadInterleaved4(kF, &values_.low[4 * e], before, a, b, after);
+    four(&values_.low[4 * e], before, a, b, after);
     if constexpr (kAxis == 0) {
       x = along(i, march_.nx, before, a, b, after);
       y = across(j, march_.ny, pair(&values_.low_down[2 * e]), pair(&values_.low_up[2 * e]));
@@ -92,12 +115,12 @@ class VertexMaker {
     } else {
       Ends down{before, before};
       Ends up{b, b};
-      hn::LoadInterleaved4(kF, &values_.high[4 * e], down.high, b, up.high, after);
+      four(&values_.high[4 * e], down.high, b, up.high, after);
       x = across(i, march_.nx, down, up);
-      const Ends down_across{hn::LoadU(kF, &values_.low_down[e]), hn::LoadU(kF, &values_.high_down[e])};
-      const Ends up_across{hn::LoadU(kF, &values_.low_up[e]), hn::LoadU(kF, &values_.high_up[e])};
-      before = hn::LoadU(kF, &values_.before[e]);
-      after = hn::LoadU(kF, &values_.beyond[e]);
+      const Ends down_across{one(&values_.low_down[e]), one(&values_.high_down[e])};
+      const Ends up_across{one(&values_.low_up[e]), one(&values_.high_up[e])};
+      before = one(&values_.before[e]);
+      after = one(&values_.beyond[e]);
       y = kAxis == 1 ? along(j, march_.ny, before, a, b, after) : across(j, march_.ny, down_across, up_across);
       z = kAxis == 2 ? along(k, march_.nz, before, a, b, after) : across(k, march_.nz, down_across, up_across);
     }
@@ -113,9 +136,9 @@ class VertexMaker {
     normal = outwards({mix(x), mix(y), mix(z)}, a, b);
   }
 
-  HWY_INLINE static Ends pair(const float* values) {
+  HWY_INLINE static Ends pair(const Value* values) {
     Ends ends;
-    hn::LoadInterleaved2(kF, values, ends.low, ends.high);
+    two(values, ends.low, ends.high);
     return ends;
   }
 
@@ -181,28 +204,35 @@ class VertexMaker {
   const MarchState& march_;
   const VertexFrame& frame_;
   int k_;
-  EdgeValues<kAxis> values_;
+  EdgeValues<kAxis, Value> values_;
 };
 
-void make_vertices_wide(const MarchState& march, int k, const VertexFrame& frame, float* positions, float* normals) {
+template <class Value>
+HWY_INLINE void make_vertices_from(const MarchState& march, int k, const VertexFrame& frame, float* positions,
+                                   float* normals) {
   const Slab& slab = march.slabs[k];
   const auto at = [](float* first, std::uint32_t vertex) { return first + 3 * std::size_t(vertex); };
   EdgeBatch along_x(at(positions, slab.first.vertex_x), at(normals, slab.first.vertex_x));
   EdgeBatch along_y(at(positions, slab.first.vertex_y), at(normals, slab.first.vertex_y));
   EdgeBatch along_z(at(positions, slab.first.vertex_z), at(normals, slab.first.vertex_z));
-  VertexMaker<0> make_x(march, k, frame);
-  VertexMaker<1> make_y(march, k, frame);
-  VertexMaker<2> make_z(march, k, frame);
+  VertexMaker<0, Value> make_x(march, k, frame);
+  VertexMaker<1, Value> make_y(march, k, frame);
+  VertexMaker<2, Value> make_z(march, k, frame);
   const std::uint32_t* active = march.slab_active(k);
+  const std::uint64_t* bits = march.row_bits(0, k);
+  const std::uint64_t* upper_bits = march.row_bits(0, std::min(k + 1, march.nz - 1));
+  const Value* two_above = march.row_values<Value>(0, std::min(k + 2, march.nz - 1));
   for (std::uint32_t n = 0; n < slab.active_words; ++n) {
     const int j = row_of(active[n]);
     const int word = word_of(active[n]);
-    const WordBits bits(march, j, k, word);
-    const float* above = march.row_values(j, std::min(k + 1, march.nz - 1)) + 64 * word;
-    const float* two_above = march.row_values(j, std::min(k + 2, march.nz - 1)) + 64 * word;
-    along_x.add((bits.here[0] ^ bits.next[0]) & march.cell_mask(word), j, word, above);
-    along_y.add(bits.here[0] ^ bits.here[1], j, word, above);
-    along_z.add(bits.here[0] ^ bits.here[2], j, word, two_above);
+    const std::size_t place = std::size_t(j) * std::size_t(march.words) + std::size_t(word);
+    const std::uint64_t here = bits[place];
+    const std::uint64_t next = march.next_bits(bits + place - word, word);
+    const std::uint64_t next_row = j + 1 < march.ny ? bits[place + std::size_t(march.words)] : here;
+    along_x.add((here ^ next) & march.cell_mask(word), j, word);
+    along_y.add(here ^ next_row, j, word);
+    along_z.add(here ^ upper_bits[place], j, word,
+                two_above + std::size_t(j) * std::size_t(march.nx) + std::size_t(64 * word));
     if (along_x.full()) make_x.flush(along_x);
     if (along_y.full()) make_y.flush(along_y);
     if (along_z.full()) make_z.flush(along_z);
@@ -210,6 +240,13 @@ void make_vertices_wide(const MarchState& march, int k, const VertexFrame& frame
   make_x.flush(along_x);
   make_y.flush(along_y);
   make_z.flush(along_z);
+}
+
+void make_vertices_wide(const MarchState& march, int k, const VertexFrame& frame, float* positions, float* normals) {
+  if (march.bytes != nullptr)
+    make_vertices_from<std::uint8_t>(march, k, frame, positions, normals);
+  else
+    make_vertices_from<float>(march, k, frame, positions, normals);
 }
 
 }  // namespace

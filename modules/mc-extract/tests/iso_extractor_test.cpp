@@ -5,6 +5,7 @@
 #include <isolux/mc_extract.h>
 
 #include <algorithm>
+#include <limits>
 #include <tuple>
 
 #include "build_mesh.h"
@@ -12,6 +13,7 @@
 #include "mesh_laws.h"
 #include "plain_marching_cubes.h"
 #include "row_march.h"
+#include "wide_kernels.h"
 
 namespace isolux {
 namespace {
@@ -212,16 +214,64 @@ TEST(IsoExtractor, BothMeshesAreOne) {
   }
 }
 
-TEST(IsoExtractor, GivesTheSameBitsOnEveryInstructionSet) {
-  const Volume volume = noise(Index3(75, 20, 13), 21);
-  const IndexedMesh expected = indexed(volume, {.isovalue = 0.5f}, IsoExtractor::Index::kBricks);
+/// Calls body for each instruction set that this machine has.
+template <class Body>
+void on_every_instruction_set(const Body& body) {
   std::int64_t targets = hwy::SupportedTargets();
   for (; targets != 0; targets &= targets - 1) {
     const std::int64_t target = targets & -targets;
     hwy::SetSupportedTargetsForTest(target);
-    EXPECT_TRUE(identical(expected, indexed(volume, {.isovalue = 0.5f}, IsoExtractor::Index::kBricks))) << target;
+    SCOPED_TRACE(target);
+    body();
   }
   hwy::SetSupportedTargetsForTest(0);
+}
+
+TEST(IsoExtractor, GivesTheSameBitsOnEveryInstructionSet) {
+  // Rows of less and of more than a word, and of several vectors' words; floats, and whole numbers that are kept as
+  // bytes.
+  for (const Volume& volume : {noise(Index3(75, 20, 13), 21), noise(Index3(75, 20, 13), 22, 256),
+                               noise(Index3(60, 9, 5), 23, 3), noise(Index3(600, 5, 4), 24)}) {
+    const ExtractSettings settings{.isovalue = volume.values(0, 0, 0)};
+    const IndexedMesh expected = indexed(volume, settings, IsoExtractor::Index::kBricks);
+    on_every_instruction_set(
+        [&] { EXPECT_TRUE(identical(expected, indexed(volume, settings, IsoExtractor::Index::kBricks))); });
+  }
+}
+
+TEST(IsoExtractor, ReadsBytesAndFloatsAlike) {
+  const Volume volume = noise(Index3(130, 21, 17), 5, 256);
+  IsoExtractor bytes(volume);
+  IsoExtractor floats(volume, {}, IsoExtractor::Index::kNone);
+  for (const OuterSide outer : {OuterSide::kLower, OuterSide::kHigher}) {
+    for (const float isovalue :
+         {-1e30f, -1.0f, 0.0f, 0.5f, 1.0f, 127.0f, 127.25f, 254.5f, 255.0f, 255.5f, 256.0f, 1e30f}) {
+      const ExtractSettings settings{.isovalue = isovalue, .outer = outer};
+      IndexedMesh a;
+      IndexedMesh b;
+      bytes.extract(settings, {}, a);
+      floats.extract(settings, {}, b);
+      EXPECT_TRUE(identical(a, b)) << isovalue;
+    }
+  }
+}
+
+TEST(WideKernels, CopyToBytesOnlyWhatIsAByte) {
+  std::vector<float> values(1000);
+  for (std::size_t i = 0; i < values.size(); ++i) values[i] = float(i % 256);
+  std::vector<std::uint8_t> bytes(values.size());
+  on_every_instruction_set([&] {
+    ASSERT_TRUE(mc::to_bytes(values.data(), values.size(), bytes.data()));
+    for (std::size_t i = 0; i < values.size(); ++i) ASSERT_EQ(float(bytes[i]), values[i]);
+    for (const std::size_t place : {std::size_t(0), std::size_t(17), values.size() - 1}) {
+      for (const float other : {-0.0f, -1.0f, 256.0f, 0.5f, 1e-30f, 3e9f, std::numeric_limits<float>::infinity(),
+                                std::numeric_limits<float>::quiet_NaN()}) {
+        std::vector<float> changed = values;
+        changed[place] = other;
+        EXPECT_FALSE(mc::to_bytes(changed.data(), changed.size(), bytes.data())) << other << " at " << place;
+      }
+    }
+  });
 }
 
 TEST(IsoExtractor, RefusesPlanesBeyondThirtyTwoBits) {

@@ -10,7 +10,8 @@ namespace isolux {
 /// Marching cubes for many isovalues of one volume: the same surface as the backend marching_cubes, with everything
 /// kept that can be kept. An index of the values of small bricks (made once, in one pass, 1/128 of the volume's memory)
 /// lets each extraction read only what the level set passes through; its buffers and the memory of the mesh that is
-/// written to serve again. Not for use from several threads at once.
+/// written to serve again. Of a volume of whole numbers from 0 to 255 the index comes with a copy in bytes (a quarter
+/// of the volume's memory), which is read in its place. Not for use from several threads at once.
 class IsoExtractor {
  public:
   /// Whether to make the index: it costs about one extraction, so leave it out for a single isovalue.

@@ -1,7 +1,9 @@
-// The half-edges on the box's faces, which no cell writes.
+// The second half of the way to half-edges: writing what was counted, then those on the box's faces, which no cell
+// writes.
 #include <isolux/core/parallel.h>
 
 #include "cube.h"
+#include "layer_pipeline.h"
 #include "row_march.h"
 
 namespace isolux::mc {
@@ -76,6 +78,42 @@ void RowMarch::link_border(const Run& run, const HalfEdgeArrays& out) const {
     out.half_edges[border].next = next;
     out.half_edges[next].previous = border;
   });
+}
+
+void RowMarch::write_half_edges(int layer, const HalfEdgeArrays& out) const {
+  const Slabs slabs = slabs_of(layer);
+  for (int k = slabs.begin; k < slabs.end; ++k) make_half_edges(march_, k, cases(), out);
+}
+
+MeshSize RowMarch::size_up_to(int layer) const {
+  const int next = slabs_of(layer).end;
+  if (next == march_.nz) return size_;
+  const Counts& first = slabs_[std::size_t(next)].first;
+  return {.vertices = first.vertex_x, .edges = first.face_x, .triangles = first.triangle};
+}
+
+void RowMarch::write(const Run& run, const std::function<void(const MeshSize&)>& reach, float* positions,
+                     float* normals, const HalfEdgeArrays& out) const {
+  if (reach) {
+    const auto nothing = [](int) {};
+    LayerPipeline pipeline(layer_count(), {.classify = nothing,
+                                           .count = nothing,
+                                           .number =
+                                               [&](int layer) {
+                                                 reach(size_up_to(layer));
+                                                 return false;
+                                               },
+                                           .grow = {},
+                                           .write = [&](int layer) { write_vertices(layer, positions, normals); },
+                                           .connect = [&](int layer) { write_half_edges(layer, out); }});
+    pipeline.run(run);
+  } else {
+    // One after the other: in turn they would drive each other's memory from the cache.
+    const auto layers = std::size_t(layer_count());
+    parallel_blocks(layers, 1, run, "", [&](const Block& b) { write_vertices(int(b.index), positions, normals); });
+    parallel_blocks(layers, 1, run, "", [&](const Block& b) { write_half_edges(int(b.index), out); });
+  }
+  link_border(run, out);
 }
 
 }  // namespace isolux::mc

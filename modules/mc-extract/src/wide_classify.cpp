@@ -1,0 +1,207 @@
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstring>
+#include <limits>
+
+#include "wide_kernels.h"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "wide_classify.cpp"
+#include <hwy/foreach_target.h>
+// After it, as Highway wants.
+#include <hwy/highway.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace isolux::mc {
+namespace HWY_NAMESPACE {
+namespace {
+
+namespace hn = hwy::HWY_NAMESPACE;
+
+using Floats = hn::ScalableTag<float>;
+
+/// The inside bits of one vector of values.
+template <class Vector>
+std::uint64_t inside_bits(const Floats d, const Vector value, const Vector isovalue, OuterSide outer) {
+  const auto inside = outer == OuterSide::kLower ? hn::Ge(value, isovalue) : hn::Le(value, isovalue);
+  alignas(8) std::uint8_t bytes[8] = {};
+  hn::StoreMaskBits(d, inside, bytes);
+  if (hn::Lanes(d) <= 8) return bytes[0];
+  std::uint64_t bits = 0;
+  for (std::size_t b = 0; b < hn::Lanes(d) / 8; ++b) bits |= std::uint64_t(bytes[b]) << (8 * b);
+  return bits;
+}
+
+/// The inside bits of up to 64 values.
+std::uint64_t classify_word(const MarchState& march, const float* values, int count) {
+  const Floats d;
+  const int lanes = int(hn::Lanes(d));
+  const auto isovalue = hn::Set(d, march.isovalue);
+  std::uint64_t word = 0;
+  int i = 0;
+  for (; i + lanes <= count; i += lanes) word |= inside_bits(d, hn::LoadU(d, values + i), isovalue, march.outer) << i;
+  for (; i < count; ++i) {
+    const bool inside = march.outer == OuterSide::kLower ? values[i] >= march.isovalue : values[i] <= march.isovalue;
+    word |= std::uint64_t(inside) << i;
+  }
+  return word;
+}
+
+/// On bytes, `value >= isovalue` is `byte >= threshold`, and `value <= isovalue` the opposite of another one.
+struct ByteThreshold {
+  int lowest;  ///< 0 to 256
+  bool inside_below;
+
+  ByteThreshold(float isovalue, OuterSide outer) : inside_below(outer == OuterSide::kHigher) {
+    const float first = inside_below ? std::floor(isovalue) + 1.0f : std::ceil(isovalue);
+    lowest = int(std::clamp(first, 0.0f, 256.0f));
+  }
+};
+
+/// The inside bits of 64 bytes, of which those beyond `count` are none of the row's.
+std::uint64_t classify_word(const std::uint8_t* bytes, int count, const ByteThreshold& threshold) {
+  const hn::CappedTag<std::uint8_t, 64> d;
+  std::uint64_t word = 0;
+  if (threshold.lowest < 256) {
+    const auto lowest = hn::Set(d, std::uint8_t(threshold.lowest));
+    for (std::size_t i = 0; i < 64; i += hn::Lanes(d)) {
+      const auto value = hn::LoadU(d, bytes + i);
+      std::uint64_t bits = 0;
+      hn::StoreMaskBits(d, hn::Eq(hn::Max(value, lowest), value), reinterpret_cast<std::uint8_t*>(&bits));
+      word |= bits << i;
+    }
+  }
+  if (threshold.inside_below) word = ~word;
+  return count < 64 ? word & ((std::uint64_t(1) << count) - 1) : word;
+}
+
+void classify_row_wide(MarchState& march, int j, int k) {
+  if (march.bytes != nullptr) {
+    const ByteThreshold threshold(march.isovalue, march.outer);
+    const std::uint8_t* bytes = march.row_values<std::uint8_t>(j, k);
+    for (int word = 0; word < march.words; ++word)
+      march.row_bits(j, k)[word] = classify_word(bytes + 64 * word, march.nx - 64 * word, threshold);
+    return;
+  }
+  const float* values = march.row_values<float>(j, k);
+  std::uint64_t* bits = march.row_bits(j, k);
+  for (int word = 0; word < march.words; ++word)
+    bits[word] = classify_word(march, values + 64 * word, std::min(64, march.nx - 64 * word));
+}
+
+void classify_bricks_wide(MarchState& march, const BrickRows& rows, int word, unsigned active, std::uint64_t uniform) {
+  const int count = std::min(64, march.nx - 64 * word);
+  const ByteThreshold threshold(march.isovalue, march.outer);
+  std::uint64_t read = 0;
+  for (unsigned left = active; left != 0; left &= left - 1)
+    read |= std::uint64_t(0xffff) << (16 * std::countr_zero(left));
+  for (int k = rows.first_plane; k < rows.last_plane; ++k) {
+    for (int j = rows.first_row; j < rows.last_row; ++j) {
+      std::uint64_t bits = uniform;
+      if (march.bytes != nullptr) {
+        const std::uint8_t* bytes = march.row_values<std::uint8_t>(j, k) + 64 * word;
+        march.row_bits(j, k)[word] = bits | (classify_word(bytes, count, threshold) & read);
+        continue;
+      }
+      const float* values = march.row_values<float>(j, k) + 64 * word;
+      for (unsigned left = active; left != 0; left &= left - 1) {
+        const int first = 16 * std::countr_zero(left);
+        bits |= classify_word(march, values + first, std::min(16, count - first)) << first;
+      }
+      march.row_bits(j, k)[word] = bits;
+    }
+  }
+}
+
+void find_range_wide(const Volume& volume, const Index3& first, const Index3& last, float& low, float& high) {
+  const Floats d;
+  const int lanes = int(hn::Lanes(d));
+  const Lattice& lattice = volume.lattice();
+  const float* values = volume.values.values().data();
+  constexpr float kInfinity = std::numeric_limits<float>::infinity();
+  auto lowest = hn::Set(d, kInfinity);
+  auto highest = hn::Set(d, -kInfinity);
+  auto odd = hn::MaskFromVec(hn::Zero(d));
+  low = kInfinity;
+  high = -kInfinity;
+  const int count = last.x - first.x + 1;
+  bool odd_tail = false;
+  for (int k = first.z; k <= last.z; ++k) {
+    for (int j = first.y; j <= last.y; ++j) {
+      const float* row = values + lattice.offset(first.x, j, k);
+      int i = 0;
+      for (; i + lanes <= count; i += lanes) {
+        const auto value = hn::LoadU(d, row + i);
+        lowest = hn::Min(lowest, value);
+        highest = hn::Max(highest, value);
+        odd = hn::Or(odd, hn::Ne(value, value));
+      }
+      for (; i < count; ++i) {
+        low = std::min(low, row[i]);
+        high = std::max(high, row[i]);
+        odd_tail |= row[i] != row[i];  // NOLINT(misc-redundant-expression): true of NaN alone
+      }
+    }
+  }
+  low = std::min(low, hn::GetLane(hn::MinOfLanes(d, lowest)));
+  high = std::max(high, hn::GetLane(hn::MaxOfLanes(d, highest)));
+  if (odd_tail || !hn::AllFalse(d, odd)) {
+    low = -kInfinity;
+    high = kInfinity;
+  }
+}
+
+/// Whether the values are whole numbers from 0 to 255, and these.
+bool to_bytes_wide(const float* values, std::size_t count, std::uint8_t* bytes) {
+  const hn::CappedTag<float, 16> d;
+  const hn::RebindToSigned<decltype(d)> di;
+  const hn::Rebind<std::uint8_t, decltype(d)> d8;
+  auto same = hn::FirstN(di, hn::Lanes(di));
+  std::size_t i = 0;
+  for (; i + hn::Lanes(d) <= count; i += hn::Lanes(d)) {
+    const auto value = hn::LoadU(d, values + i);
+    const auto byte = hn::DemoteTo(d8, hn::ConvertTo(di, value));
+    hn::StoreU(byte, d8, bytes + i);
+    // Bit by bit, so that -0 is none.
+    const auto back = hn::ConvertTo(d, hn::PromoteTo(di, byte));
+    same = hn::And(same, hn::Eq(hn::BitCast(di, back), hn::BitCast(di, value)));
+  }
+  bool all = hn::AllTrue(di, same);
+  for (; i < count && all; ++i) {
+    all = values[i] >= 0.0f && values[i] <= 255.0f && !std::signbit(values[i]);
+    if (all) bytes[i] = std::uint8_t(values[i]);
+    all = all && float(bytes[i]) == values[i];
+  }
+  return all;
+}
+
+}  // namespace
+}  // namespace HWY_NAMESPACE
+}  // namespace isolux::mc
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace isolux::mc {
+
+HWY_EXPORT(classify_row_wide);
+HWY_EXPORT(classify_bricks_wide);
+HWY_EXPORT(find_range_wide);
+HWY_EXPORT(to_bytes_wide);
+
+void classify_row(MarchState& march, int j, int k) { HWY_DYNAMIC_DISPATCH(classify_row_wide)(march, j, k); }
+
+void classify_bricks(MarchState& march, const BrickRows& rows, int word, unsigned active, std::uint64_t uniform) {
+  HWY_DYNAMIC_DISPATCH(classify_bricks_wide)(march, rows, word, active, uniform);
+}
+
+void find_range(const Volume& volume, const Index3& first, const Index3& last, float& low, float& high) {
+  HWY_DYNAMIC_DISPATCH(find_range_wide)(volume, first, last, low, high);
+}
+
+bool to_bytes(const float* values, std::size_t count, std::uint8_t* bytes) {
+  return HWY_DYNAMIC_DISPATCH(to_bytes_wide)(values, count, bytes);
+}
+
+}  // namespace isolux::mc
+#endif
