@@ -16,14 +16,14 @@
 namespace isolux {
 namespace {
 
-constexpr std::array<std::size_t, 3> kWindows = {57, 120,
-                                                 200};     ///< samples; light decides which of them is wide enough
-constexpr std::size_t kCoordinates = 10;                   ///< place, isovalue, normal, openness
-constexpr std::array<double, 3> kSteps = {1.0, 2.0, 4.0};  ///< of the openness, grid spacings
-constexpr double kIsovalueLength =
-    2.0;                             // of the whole range in grid steps: a coordinate of the fit, hardly of the search
+// Samples; the light decides which of them is wide enough.
+constexpr std::array<std::size_t, 3> kWindows = {57, 120, 200};
+constexpr std::size_t kCoordinates = 10;                   // place, isovalue, normal, openness
+constexpr std::array<double, 3> kSteps = {1.0, 2.0, 4.0};  // of the openness, grid spacings
+// Of the whole range of isovalues in grid steps: a coordinate of the fit, hardly of the search.
+constexpr double kIsovalueLength = 2.0;
 constexpr double kUnitLength = 2.0;  // of normals and openness likewise
-constexpr double kRidge = 0.005;
+constexpr double kRidge = 0.001;
 constexpr std::size_t kTouching = 13;  // a sample and those about it
 constexpr std::size_t kAround = 15;    // where risks are averaged; more would blur the choice near edges
 /// A site's own variance is known within this factor: on the whole it is right, but few rays that agree by chance, or
