@@ -8,9 +8,12 @@ namespace {
 // docs/resampling.md has the curves behind these.
 constexpr double kFitSites = 8.0;   // a texel and cell
 constexpr double kFineSites = 2.0;  // a texel
-// One isovalue: the most texels that bricks of one number a voxel of the whole volume have room for.
+// Known isovalues: the most texels that bricks of one number a voxel of the whole volume have room for, of a single one
+// without slopes and of a tenth of all with them.
 constexpr double kOneIsovalueTexels = 1.7;
-constexpr double kOneIsovalueSites = 16.0;  // a crossed cell
+constexpr double kRangeTexels = 1.15;
+constexpr double kKnownSites = 16.0;  // a crossed cell
+constexpr const char* kRangeSlopePrior = "0.01";
 /// A cell that a level set only just cuts may get no site; its texels are next to lit ones.
 constexpr int kFilledLayers = 2;
 
@@ -31,16 +34,22 @@ void choose_resampling(BakeSettings& settings) {
   }
   if (settings.resampler.name.empty())
     settings.resampler.name = settings.sampler.name == "texels" ? "direct" : "cell_grid";
-  if (settings.texels_a_cell == 0.0) settings.texels_a_cell = fit && one_isovalue(settings) ? kOneIsovalueTexels : 1.0;
+  const bool one = one_isovalue(settings);
+  const bool range = settings.isovalues && !one;
+  if (settings.texels_a_cell == 0.0) {
+    settings.texels_a_cell = 1.0;
+    if (fit && !settings.texels) settings.texels_a_cell = one ? kOneIsovalueTexels : range ? kRangeTexels : 1.0;
+  }
   if (!fit) return;
   // Finer texels tell level sets apart themselves; all sites of one isovalue say nothing of how light changes with it.
-  const bool fine = settings.texels_a_cell > 1.0;
-  if (fine || one_isovalue(settings)) settings.resampler.settings.try_emplace("slopes", "false");
+  const bool fine = settings.texels_a_cell > (range ? kRangeTexels : 1.0);
+  if (fine || one) settings.resampler.settings.try_emplace("slopes", "false");
+  if (range) settings.resampler.settings.try_emplace("slope_prior", kRangeSlopePrior);
   if (settings.sites_a_cell != 0.0) return;
-  if (fine && one_isovalue(settings)) {
-    settings.sites_a_cell = kOneIsovalueSites;
+  if (fine && !settings.isovalues) {
+    settings.sites_a_cell = kFineSites * std::pow(settings.texels_a_cell, 3);
   } else {
-    settings.sites_a_cell = fine ? kFineSites * std::pow(settings.texels_a_cell, 3) : kFitSites;
+    settings.sites_a_cell = settings.isovalues ? kKnownSites : kFitSites;
   }
 }
 
