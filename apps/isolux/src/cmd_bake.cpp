@@ -156,7 +156,7 @@ void add_bake_command(CLI::App& program, Session& session) {
       .add_option(
           "--texels-a-cell", options->texels_a_cell,
           "texels a cell on each axis, 1.5 too (default 1; with --resampler fit 1.7 for one isovalue, 1.15 for a "
-          "range): 2 with the fit is the best light")
+          "range): 1.58 with the fit is the best light")
       ->check(CLI::Range(0.125, 8.0))
       ->type_name("N");
   command.add_option("--lattice", options->lattice, "texels at the cell centres (default) or at the voxels")

@@ -1,19 +1,23 @@
 #include "resampling_choice.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace isolux {
 namespace {
 
 // docs/resampling.md has the curves behind these.
-constexpr double kFitSites = 8.0;   // a texel and cell
-constexpr double kFineSites = 2.0;  // a texel
+constexpr double kFitSites = 8.0;   // a texel
+constexpr double kFineSites = 2.0;  // a texel without slopes
+// All isovalues: the most texels that eight numbers a voxel have room for with slopes. Finer ones tell level sets apart
+// themselves.
+constexpr double kSlopedTexels = 1.6;
 // Known isovalues: the most texels that bricks of one number a voxel of the whole volume have room for, of a single one
 // without slopes and of a tenth of all with them.
 constexpr double kOneIsovalueTexels = 1.7;
 constexpr double kRangeTexels = 1.15;
-constexpr double kKnownSites = 16.0;  // a crossed cell
-constexpr const char* kRangeSlopePrior = "0.01";
+constexpr double kKnownSites = 16.0;             // a crossed cell
+constexpr const char* kWeakSlopePrior = "0.01";  // where sites a cell are many
 /// A cell that a level set only just cuts may get no site; its texels are next to lit ones.
 constexpr int kFilledLayers = 2;
 
@@ -41,16 +45,15 @@ void choose_resampling(BakeSettings& settings) {
     if (fit && !settings.texels) settings.texels_a_cell = one ? kOneIsovalueTexels : range ? kRangeTexels : 1.0;
   }
   if (!fit) return;
-  // Finer texels tell level sets apart themselves; all sites of one isovalue say nothing of how light changes with it.
-  const bool fine = settings.texels_a_cell > (range ? kRangeTexels : 1.0);
-  if (fine || one) settings.resampler.settings.try_emplace("slopes", "false");
-  if (range) settings.resampler.settings.try_emplace("slope_prior", kRangeSlopePrior);
+  // All sites of one isovalue say nothing of how light changes with it.
+  const bool fine = settings.texels_a_cell > (range ? kRangeTexels : kSlopedTexels);
+  Settings& options = settings.resampler.settings;
+  if (fine || one) options.try_emplace("slopes", "false");
+  if (range || settings.texels_a_cell > 1.0) options.try_emplace("slope_prior", kWeakSlopePrior);
   if (settings.sites_a_cell != 0.0) return;
-  if (fine && !settings.isovalues) {
-    settings.sites_a_cell = kFineSites * std::pow(settings.texels_a_cell, 3);
-  } else {
-    settings.sites_a_cell = settings.isovalues ? kKnownSites : kFitSites;
-  }
+  settings.sites_a_cell = settings.isovalues
+                              ? kKnownSites
+                              : (fine ? kFineSites : kFitSites) * std::pow(std::max(1.0, settings.texels_a_cell), 3);
 }
 
 double sites_a_texel(const Lattice& volume, const Lattice& texels, const BakeSettings& settings) {
