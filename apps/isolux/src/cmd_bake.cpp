@@ -53,7 +53,9 @@ BakeSettings bake_settings(const Options& options, const Stages& stages) {
     settings.texels = parse_size3("--texels", options.texels, "auto or NXxNYxNZ");
   settings.texels_a_cell = options.texels_a_cell;
   if (!options.iso_range.empty()) settings.isovalues = parse_range("--iso-range", options.iso_range);
-  if (options.sites == "need" && options.rmse <= 0.0) throw UsageError("--sites need: allowed with --rmse alone");
+  const bool scattered = options.resampler == "fit" || options.samples > 0;
+  if (options.sites == "need" && !scattered && options.rmse <= 0.0)
+    throw UsageError("--sites need: allowed with --rmse alone, or with scattered sites (--resampler fit, --samples)");
   settings.texel_sites = options.sites == "need" ? TexelSites::kNeeded : TexelSites::kAll;
   settings.target_rmse = options.rmse;
   settings.target_seconds = options.time;
@@ -151,10 +153,10 @@ void add_bake_command(CLI::App& program, Session& session) {
                   "(default .05) between them")
       ->type_name("NXxNYxNZ|auto");
   command
-      .add_option("--texels-a-cell", options->texels_a_cell,
-                  "texels a cell on each axis, 1.5 too (default 1; with --resampler fit 1.7 for one isovalue): 2 with "
-                  "the fit is "
-                  "the best light")
+      .add_option(
+          "--texels-a-cell", options->texels_a_cell,
+          "texels a cell on each axis, 1.5 too (default 1; with --resampler fit 1.7 for one isovalue, 1.15 for a "
+          "range): 1.58 with the fit is the best light")
       ->check(CLI::Range(0.125, 8.0))
       ->type_name("N");
   command.add_option("--lattice", options->lattice, "texels at the cell centres (default) or at the voxels")
@@ -171,7 +173,8 @@ void add_bake_command(CLI::App& program, Session& session) {
       ->type_name("TARGET");
   command
       .add_option("--sites", options->sites,
-                  "texels to trace: all (default), or need: with --rmse few of them, the others being predicted")
+                  "all (default), or need: with --rmse few texels, the others being predicted; of scattered sites "
+                  "(--resampler fit) half where the others say that light changes")
       ->check(CLI::IsMember({"all", "need"}));
   command.add_option("--time", options->time, "seconds to spend on rays and bounces; with --rmse: at most")
       ->check(CLI::PositiveNumber)

@@ -7,6 +7,7 @@
 #include <map>
 #include <memory>
 
+#include "sites_by_need.h"
 #include "surface_cases.h"
 
 namespace {
@@ -58,7 +59,21 @@ struct Scheme {
   int rays;
   double texels;  ///< a cell and axis
   Settings settings;
+  bool by_need = false;  ///< half of the sites where the others say that light changes
 };
+
+SampleSet samples_of(const Case& c, const Scheme& scheme, const Lattice& texels) {
+  const auto sampler = samplers().create(scheme.sampler);
+  SiteRequest request{.texels = texels, .per_texel = scheme.sites / std::pow(scheme.texels, 3), .isovalues = c.range};
+  if (scheme.by_need) request.per_texel *= 0.5;
+  SampleSet samples = trace(*c.block, sampler->sample(*c.block, request, {.seed = 3}), scheme.rays, 5);
+  if (!scheme.by_need) return samples;
+  request.count = 4 * samples.size();
+  const Sites candidates = sampler->sample(*c.block, request, {.seed = 4});
+  Sites more = sites_by_need(*c.block, samples, candidates, samples.size(), {.seed = 4});
+  append_samples(samples, trace(*c.block, std::move(more), scheme.rays, 6));
+  return samples;
+}
 
 /// Numbers in the bricks of the whole volume that the range needs, page table included, a voxel.
 double stored_a_voxel(const Case& c, const Scheme& scheme) {
@@ -77,10 +92,7 @@ void light_of_a_range(benchmark::State& state, const Scheme& scheme) {
     state.PauseTiming();
     for (const Case& c : cases(scheme.width)) {
       const Lattice texels = texels_of(*c.block, scheme.texels);
-      const SiteRequest request{
-          .texels = texels, .per_texel = scheme.sites / std::pow(scheme.texels, 3), .isovalues = c.range};
-      const SampleSet samples =
-          trace(*c.block, samplers().create(scheme.sampler)->sample(*c.block, request, {.seed = 3}), scheme.rays, 5);
+      const SampleSet samples = samples_of(c, scheme, texels);
       if (samples.size() == 0) continue;
       state.ResumeTiming();
       ResampledGrid partial = resampler->resample(*c.block, samples, texels, {});
@@ -112,6 +124,11 @@ const int kRegistered = [] {
       {"range/16x32", {0.1f, "level_sets", 16, 32, 1, {}}},
       {"range/16x64", {0.1f, "level_sets", 16, 64, 1, {}}},
       {"range/8x64_2_an_axis_value", {0.1f, "level_sets", 8, 64, 2, value}},
+      {"range/16x64_1.15", {0.1f, "level_sets", 16, 64, 1.15, {{"slope_prior", "0.01"}}}},
+      {"range/8x64_need", {0.1f, "level_sets", 8, 64, 1, {}, true}},
+      {"range/16x64_1.15_need", {0.1f, "level_sets", 16, 64, 1.15, {{"slope_prior", "0.01"}}, true}},
+      {"range/32x32_1.15", {0.1f, "level_sets", 32, 32, 1.15, {{"slope_prior", "0.01"}}}},
+      {"range/32x64_1.15", {0.1f, "level_sets", 32, 64, 1.15, {{"slope_prior", "0.01"}}}},
       {"range/32x64", {0.1f, "level_sets", 32, 64, 1, {}}},
       {"range/8x64_1.25", {0.1f, "level_sets", 8, 64, 1.25, {}}},
       {"range/16x64_1.25", {0.1f, "level_sets", 16, 64, 1.25, {}}},

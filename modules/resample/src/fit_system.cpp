@@ -55,14 +55,8 @@ void FitSystem::sort_rows(const Volume& volume, const SampleSet& samples, const 
 
 void FitSystem::measure_near_field(const Volume& volume, const SampleSet& samples, const Run& run) {
   const NearField near_field(volume);
-  // The samples' normals know which side is the outer one, and hence in front.
-  double lower = 0.0;
-  for (std::size_t s = 0; s < std::min<std::size_t>(samples.size(), 4096); ++s) {
-    const Vec3 position(samples.sites.positions[s]);
-    lower -= glm::dot(near_field.field().world_gradient(position, GradientKind::kCentralDifferences),
-                      Vec3(samples.sites.normals[s]));
-  }
-  for (double& step : steps_) step = lower < 0.0 ? -step : step;
+  const double outwards = near_field.outwards(samples.sites);
+  for (double& step : steps_) step *= outwards;
 
   std::vector<Terms> sums(block_count(rows_.size(), 4096), Terms{});
   parallel_blocks(rows_.size(), 4096, run, "", [&](const Block& block) {

@@ -15,7 +15,7 @@
 namespace isolux {
 
 /// Steps of the near-field terms, in mean grid spacings: one and two are as much as reads fast (docs/resampling.md).
-inline constexpr std::array<double, 2> kNearFieldSteps = {1.0, 2.0};
+inline constexpr std::array<double, 4> kNearFieldSteps = {0.5, 1.0, 2.0, 4.0};
 
 /// What a fit solves for, or any vector of that shape: a value and a slope for each texel used and a few weights for
 /// all.

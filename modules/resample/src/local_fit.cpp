@@ -4,22 +4,25 @@
 
 namespace isolux {
 
-void LocalFit::add(double weight, const std::array<double, 4>& at, const float* values, std::size_t channels) {
-  const std::array<double, kUnknowns> row{1.0, at[0], at[1], at[2], at[3]};
+template <std::size_t kCoordinates>
+void LocalFit<kCoordinates>::add(double weight, const Coordinates& at, const float* values, std::size_t channels) {
+  std::array<double, kUnknowns> row{1.0};
+  for (std::size_t i = 0; i < kCoordinates; ++i) row[i + 1] = at[i];
   for (std::size_t i = 0; i < kUnknowns; ++i) {
     for (std::size_t j = 0; j <= i; ++j) matrix_[i][j] += weight * row[i] * row[j];
     for (std::size_t c = 0; c < channels; ++c) right_[i][c] += weight * row[i] * double(values[c]);
   }
 }
 
-void LocalFit::at_origin(double ridge, float* values, std::size_t channels) const {
+template <std::size_t kCoordinates>
+double LocalFit<kCoordinates>::at_origin(double ridge, float* values, std::size_t channels) const {
   // Slopes are eliminated first, so that what is left in the last row is the value's own equation. The light is taken
   // relative to its mean, which keeps constants exact.
   const double total = matrix_[0][0];
   std::array<double, 3> mean{};
   for (std::size_t c = 0; c < channels; ++c) mean[c] = right_[0][c] / total;
 
-  constexpr std::size_t kSlopes = kUnknowns - 1;
+  constexpr std::size_t kSlopes = kCoordinates;
   std::array<std::array<double, kUnknowns>, kUnknowns> a{};
   std::array<std::array<double, 3>, kUnknowns> b{};
   double spread = 0.0;
@@ -43,10 +46,12 @@ void LocalFit::at_origin(double ridge, float* values, std::size_t channels) cons
     }
   }
   const double pivot = a[kSlopes][kSlopes];
-  for (std::size_t c = 0; c < channels; ++c) {
-    const bool sound = pivot > 1e-6 * total;
-    values[c] = float(mean[c] + (sound ? b[kSlopes][c] / pivot : 0.0));
-  }
+  const bool sound = pivot > 1e-6 * total;
+  for (std::size_t c = 0; c < channels; ++c) values[c] = float(mean[c] + (sound ? b[kSlopes][c] / pivot : 0.0));
+  return 1.0 / (sound ? pivot : total);
 }
+
+template class LocalFit<4>;
+template class LocalFit<10>;
 
 }  // namespace isolux

@@ -22,4 +22,13 @@ float NearField::openness(const Vec3& index, double isovalue, double step) const
   return float(std::clamp((isovalue - ahead) / (steepness * length), -1.0, 1.0));
 }
 
+double NearField::outwards(const Sites& sites) const {
+  double lower = 0.0;
+  for (std::size_t s = 0; s < std::min<std::size_t>(sites.size(), 4096); ++s) {
+    lower -= glm::dot(field_.world_gradient(Vec3(sites.positions[s]), GradientKind::kCentralDifferences),
+                      Vec3(sites.normals[s]));
+  }
+  return lower < 0.0 ? -1.0 : 1.0;
+}
+
 }  // namespace isolux

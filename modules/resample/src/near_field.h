@@ -2,6 +2,7 @@
 
 #include <isolux/core/field.h>
 #include <isolux/core/illumination_grid.h>
+#include <isolux/core/sample_set.h>
 
 namespace isolux {
 
@@ -15,6 +16,8 @@ class NearField {
 
   /// -1 (closed) to 1 (open) at a point of index space; 0 where there is no gradient. `step` as in NearFieldTerm.
   [[nodiscard]] float openness(const Vec3& index, double isovalue, double step) const;
+  /// The sign of steps towards the outer side: the sites' normals know which that is.
+  [[nodiscard]] double outwards(const Sites& sites) const;
   [[nodiscard]] const TrilinearField& field() const { return field_; }
 
  private:

@@ -69,7 +69,7 @@ class MovingLeastSquares final : public Resampler {
     const auto channels = std::size_t(samples.channels);
     const double reach = double(found.back().reach()) * 1.0001;
     const double steepness = glm::length(gradient);
-    LocalFit fit;
+    LocalFit<4> fit;
     float low[3] = {INFINITY, INFINITY, INFINITY};
     float high[3] = {-INFINITY, -INFINITY, -INFINITY};
     for (const Neighbour& n : found) {

@@ -31,12 +31,13 @@ enum class BounceMethod {
   kPaths      ///< the tracer follows every path to its end: unbiased
 };
 
-/// Which texels are traced where sites sit at the texels.
+/// Which sites are traced.
 enum class TexelSites {
   kAll,    ///< every one
-  kNeeded  ///< few, the others being predicted from them, until target_rmse is reached (docs/need.md); not with a time,
-           ///< bounces by paths, light sources, an image as environment, other tracers than wide, other resamplers than
-           ///< direct
+  kNeeded  ///< at the texels: few, the others being predicted from them, until target_rmse is reached (docs/need.md);
+           ///< not with a time, light sources, an image as environment, paths, other tracers than wide, other
+           ///< resamplers than direct. Scattered: as many as otherwise, half of them where the others say that light
+           ///< changes; not with an error or a time
 };
 
 struct BakeSettings {
@@ -94,8 +95,8 @@ struct BakeResult {
 
 /// `settings` with every backend named and what they want filled in (docs/resampling.md): sites at the texels and the
 /// direct resampler; for the least-squares fit stratified sites, or with known isovalues sites on their level sets, and
-/// for one isovalue 1.7 texels an axis; where a number of samples or another sampler is asked for, low-discrepancy
-/// sites and Shepard's interpolation over a cell grid; the default tracer.
+/// 1.15 texels an axis, 1.7 for one isovalue; where a number of samples or another sampler is asked for,
+/// low-discrepancy sites and Shepard's interpolation over a cell grid; the default tracer.
 [[nodiscard]] BakeSettings with_defaults(BakeSettings settings, const Stages& stages);
 
 /// Lights all level sets of a volume at once, with_defaults(). The same bits for any number of threads. Where
