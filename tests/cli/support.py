@@ -1,6 +1,7 @@
 """Runs the isolux program as a user's script would. ISOLUX_BIN names it."""
 import json
 import os
+import struct
 import subprocess
 import tempfile
 import unittest
@@ -67,3 +68,26 @@ def nrrd_header(path):
         fields[key] = value
         order.append(key)
     return fields, order, data
+
+
+def ply(path):
+    """(header lines, vertices as tuples, faces as tuples) of a binary little-endian PLY of floats and uchars."""
+    with open(path, "rb") as file:
+        content = file.read()
+    head, data = content.split(b"end_header\n", 1)
+    lines = head.decode().splitlines()
+    codes = {"float": "f", "uchar": "B", "uint8": "B", "float32": "f"}
+    vertices = faces = 0
+    layout = "<"
+    for line in lines:
+        words = line.split()
+        if words[:2] == ["element", "vertex"]:
+            vertices = int(words[2])
+        elif words[:2] == ["element", "face"]:
+            faces = int(words[2])
+        elif words[0] == "property" and words[1] != "list":
+            layout += codes[words[1]]
+    size = struct.calcsize(layout)
+    points = [struct.unpack_from(layout, data, i * size) for i in range(vertices)]
+    triangles = [struct.unpack_from("<B3i", data, vertices * size + i * 13)[1:] for i in range(faces)]
+    return lines, points, triangles
