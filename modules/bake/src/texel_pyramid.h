@@ -93,6 +93,8 @@ class TexelPyramid {
     }
   };
 
+  static constexpr std::size_t kBlock = 8192;  ///< texels or cells a task
+
   enum class Site : std::uint8_t { kUnknown, kLit, kUnlit };
 
   void ask(std::span<const Cell> cells);

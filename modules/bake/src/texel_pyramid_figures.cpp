@@ -11,7 +11,6 @@
 namespace isolux {
 namespace {
 
-constexpr std::size_t kBlock = 8192;
 constexpr double kOwnWeight = 0.125;
 /// A cell whose own differences are so many times what noise explains is judged by itself: an edge runs through it.
 constexpr double kClear = 4.0;

@@ -10,12 +10,6 @@
 #include "texel_pyramid.h"
 
 namespace isolux {
-namespace {
-
-constexpr std::size_t kBlock = 8192;
-
-}  // namespace
-
 template <class Visit>
 void TexelPyramid::for_each_texel(const Cell& cell, const Visit& visit) const {
   const Index3 first = first_texel(cell);

@@ -1,16 +1,14 @@
 #include "texel_site_maker.h"
 
+#include "grid_index.h"
+
 namespace isolux {
 
 Sites TexelSiteMaker::make(std::span<const std::size_t> texels, std::vector<std::uint8_t>* lit) const {
   const IndexToWorld to_volume = index_to_index(request_.texels, volume_.lattice());
-  const auto nx = std::size_t(request_.texels.size.x);
-  const auto ny = std::size_t(request_.texels.size.y);
   std::vector<Vec3f> positions(texels.size());
-  for (std::size_t i = 0; i < texels.size(); ++i) {
-    const std::size_t t = texels[i];
-    positions[i] = Vec3f(to_volume.world(Vec3(double(t % nx), double(t / nx % ny), double(t / (nx * ny)))));
-  }
+  for (std::size_t i = 0; i < texels.size(); ++i)
+    positions[i] = Vec3f(to_volume.world(Vec3(index_of(request_.texels.size, texels[i]))));
   Sites sites = make_sites(volume_, positions, request_, run_);
   if (lit == nullptr) return sites;
   // Those without a site were left out, the order kept; no two texels share a place.
