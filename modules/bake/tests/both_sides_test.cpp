@@ -134,7 +134,7 @@ double error_over(const IlluminationGrid& light, const std::function<double(cons
   return std::sqrt(sum / count);
 }
 
-constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+constexpr double kNoAnswer = std::numeric_limits<double>::quiet_NaN();
 double from_middle(const Vec3& p) { return glm::length(p - kCenter); }
 
 // theory.md, answers 3, 6 and 7: a ball is convex from outside, dark inside where it is closed and an open integrating
@@ -148,13 +148,13 @@ TEST(BothSides, OfABallAreWhiteOutsideAndAnIntegratingSphereInside) {
   const auto inside = [&](const Vec3& p) {
     const double r = from_middle(p);
     const double open = 3.0 * (1.0 - 0.5 / r);
-    return r > 0.55 && r < 0.68 ? open / (1.0 - double(albedo) * (1.0 - open)) : kUnknown;
+    return r > 0.55 && r < 0.68 ? open / (1.0 - double(albedo) * (1.0 - open)) : kNoAnswer;
   };
   // Creases of the trilinear ball catch a ray here and there; reflected light gives most of it back.
-  EXPECT_LT(error_over(baked.light, [](const Vec3& p) { return from_middle(p) > 0.15 ? 1.0 : kUnknown; }), 0.01);
+  EXPECT_LT(error_over(baked.light, [](const Vec3& p) { return from_middle(p) > 0.15 ? 1.0 : kNoAnswer; }), 0.01);
   // No ray leaves a closed ball; what is reflected is read from texels around, some of them of the next level sets, and
   // so a little of the open ones' light comes in from bounce to bounce.
-  EXPECT_LT(error_over(*baked.inner_light, [](const Vec3& p) { return from_middle(p) < 0.44 ? 0.0 : kUnknown; }),
+  EXPECT_LT(error_over(*baked.inner_light, [](const Vec3& p) { return from_middle(p) < 0.44 ? 0.0 : kNoAnswer; }),
             0.001);
   // 64 rays of e = .55 to .95: .03 a texel at worst (binomial), a third of it as they are stratified; the rest is the
   // grid's.
@@ -167,8 +167,8 @@ TEST(BothSides, OfAnOpenSphereAreWhiteWhereSeenFromOutside) {
   settings.trace.rays = 64;
   settings.trace.bounces = 0;
   const BakeResult baked = bake(cavity(32), both_sides_scene(0.5f), settings, builtin_stages(), {});
-  EXPECT_LT(error_over(*baked.inner_light, [](const Vec3& p) { return from_middle(p) > 0.55 ? 1.0 : kUnknown; }), 0.01);
-  EXPECT_EQ(error_over(baked.light, [](const Vec3& p) { return from_middle(p) < 0.44 ? 0.0 : kUnknown; }), 0.0);
+  EXPECT_LT(error_over(*baked.inner_light, [](const Vec3& p) { return from_middle(p) > 0.55 ? 1.0 : kNoAnswer; }), 0.01);
+  EXPECT_EQ(error_over(baked.light, [](const Vec3& p) { return from_middle(p) < 0.44 ? 0.0 : kNoAnswer; }), 0.0);
 }
 
 // Le = 1 - rho and environment 1: outgoing radiance 1 on both sides of anything, e = 1 where it has a normal. The
