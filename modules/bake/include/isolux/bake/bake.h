@@ -81,8 +81,7 @@ struct BakeResult {
   int sweeps = 0;                ///< of BounceMethod::kIterated
   std::size_t unlit_texels = 0;  ///< filled from their lit neighbours
   /// Root mean squared standard error of e over the sites, or error at texels held out, biases included
-  /// (TexelSites::kNeeded); NaN if
-  /// one ray a site says nothing of it.
+  /// (TexelSites::kNeeded); NaN if one ray a site says nothing of it.
   double rmse_estimate = 0.0;
   std::uint32_t least_rays = 0;  ///< a site
   std::uint32_t most_rays = 0;
