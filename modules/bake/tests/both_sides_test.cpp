@@ -167,7 +167,8 @@ TEST(BothSides, OfAnOpenSphereAreWhiteWhereSeenFromOutside) {
   settings.trace.rays = 64;
   settings.trace.bounces = 0;
   const BakeResult baked = bake(cavity(32), both_sides_scene(0.5f), settings, builtin_stages(), {});
-  EXPECT_LT(error_over(*baked.inner_light, [](const Vec3& p) { return from_middle(p) > 0.55 ? 1.0 : kNoAnswer; }), 0.01);
+  EXPECT_LT(error_over(*baked.inner_light, [](const Vec3& p) { return from_middle(p) > 0.55 ? 1.0 : kNoAnswer; }),
+            0.01);
   EXPECT_EQ(error_over(baked.light, [](const Vec3& p) { return from_middle(p) < 0.44 ? 0.0 : kNoAnswer; }), 0.0);
 }
 
