@@ -149,8 +149,9 @@ TEST_P(LitPixels, AgreeWithTheLookUpOnTheProcessor) {
       const Vec3 world = centre + Vec3(centred) / centred.w;
       const Vec3f shown = view.exposure * view.albedo * reader.at_index(lattice.frame.index(world), double(kIsovalue));
       for (int c = 0; c < 3; ++c) {
-        // One code for the texture's float16 and 8-bit filter weights, one for rounding.
-        ASSERT_LE(std::abs(int(target.colours[at][std::size_t(c)]) - int(srgb_code(shown[c]))), 2)
+        // One code for the texture's float16 and 8-bit filter weights, one for rounding; the near field, which makes
+        // some 50 codes of difference here, is interpolated between the vertices of a ball of 32 cells: three more.
+        ASSERT_LE(std::abs(int(target.colours[at][std::size_t(c)]) - int(srgb_code(shown[c]))), detail ? 5 : 2)
             << "pixel " << x << "," << y << " channel " << c;
       }
       ++compared;

@@ -1,28 +1,42 @@
 #include <fmt/format.h>
 #include <isolux/resample/light_reader.h>
 
-#include <algorithm>
-
 namespace isolux {
 namespace {
 
-constexpr const char* kVolume = R"(
+constexpr const char* kNearField = R"(
 uniform sampler3D volume_values;    // f, texels at the grid points
 uniform vec3 grid_points;           // of the volume
 uniform mat3 index_from_world;      // directions
+uniform float mean_spacing;
+uniform float near_field_step[near_field_terms];
+uniform float near_field_mean[near_field_terms];
+uniform vec3 near_field_weight[near_field_terms];
 
 float volume_at(vec3 index) { return texture(volume_values, (index + 0.5) / grid_points).r; }
-)";
 
-constexpr const char* kGradient = R"(
-vec3 volume_gradient(vec3 place) {
-  vec3 index = place * (grid_points - 1.0);
-  // Equal to interpolating the grid points' central differences, but on the outermost grid points.
+// Equal to interpolating the grid points' central differences, but on the outermost grid points.
+vec3 world_gradient(vec3 index) {
   vec3 g;
   g.x = volume_at(index + vec3(1, 0, 0)) - volume_at(index - vec3(1, 0, 0));
   g.y = volume_at(index + vec3(0, 1, 0)) - volume_at(index - vec3(0, 1, 0));
   g.z = volume_at(index + vec3(0, 0, 1)) - volume_at(index - vec3(0, 0, 1));
   return 0.5 * transpose(index_from_world) * g;
+}
+
+vec3 near_field(vec3 place, float isovalue) {
+  vec3 index = place * (grid_points - 1.0);
+  vec3 gradient = world_gradient(index);
+  vec3 e = vec3(0.0);
+  float square = dot(gradient, gradient);
+  float flatness = square > 0.0 ? inversesqrt(square) : 0.0;
+  vec3 ahead = index_from_world * (gradient * (-mean_spacing * flatness));
+  for (int t = 0; t < near_field_terms; ++t) {
+    float fall = isovalue - volume_at(index + near_field_step[t] * ahead);
+    float openness = clamp(fall * (flatness / (near_field_step[t] * mean_spacing)), -1.0, 1.0);
+    e += near_field_weight[t] * (openness - near_field_mean[t]);
+  }
+  return e;
 }
 )";
 
@@ -39,23 +53,6 @@ uniform vec3 light_page_count;
 uniform vec3 atlas_texels;
 uniform float reference_isovalue;   // h0
 uniform float light_ceiling;
-uniform float mean_spacing;
-uniform float near_field_step[near_field_room];
-uniform float near_field_mean[near_field_room];
-uniform vec3 near_field_weight[near_field_room];
-
-vec3 near_field(vec3 index, float isovalue, vec3 gradient) {
-  vec3 e = vec3(0.0);
-  float square = dot(gradient, gradient);
-  float flatness = square > 0.0 ? inversesqrt(square) : 0.0;
-  vec3 ahead = index_from_world * (gradient * (-mean_spacing * flatness));
-  for (int t = 0; t < near_field_terms; ++t) {
-    float fall = isovalue - volume_at(index + near_field_step[t] * ahead);
-    float openness = clamp(fall * (flatness / (near_field_step[t] * mean_spacing)), -1.0, 1.0);
-    e += near_field_weight[t] * (openness - near_field_mean[t]);
-  }
-  return e;
-}
 
 // From a coordinate in the whole light to one in the atlas; false where there is no brick.
 bool find_brick(inout vec3 coordinate) {
@@ -66,13 +63,13 @@ bool find_brick(inout vec3 coordinate) {
   return brick.a > 0.0;
 }
 
-vec3 read_light(vec3 place, float isovalue, vec3 gradient) {
+vec3 read_light(vec3 place, float isovalue, vec3 near_field) {
   vec3 coordinate = light_scale * place + light_offset;
   if (light_in_bricks && !find_brick(coordinate)) return vec3(0.0);
   vec3 e = light_gain * texture(light_offsets, coordinate).rgb;
-  if (!light_has_slopes && near_field_terms == 0) return e;
+  if (!light_has_slopes && !light_has_near_field) return e;
   if (light_has_slopes) e += texture(light_slopes, coordinate).rgb * (light_slope_gain * (isovalue - reference_isovalue));
-  if (near_field_terms > 0) e += near_field(place * (grid_points - 1.0), isovalue, gradient);
+  if (light_has_near_field) e += near_field;
   return clamp(e, 0.0, light_ceiling);
 }
 )";
@@ -84,11 +81,12 @@ std::string light_reader_glsl(const LightShader& kind) {
       "#version 330 core\n"
       "const bool light_has_slopes = {};\n"
       "const bool light_in_bricks = {};\n"
-      "const int near_field_terms = {};\n"
-      "const int near_field_room = {};  // no array is empty\n{}{}",
-      kind.slopes, kind.bricks, kind.near_field_terms, std::max(kind.near_field_terms, 1), kVolume, kReader);
+      "const bool light_has_near_field = {};\n{}",
+      kind.slopes, kind.bricks, kind.near_field_terms > 0, kReader);
 }
 
-std::string volume_gradient_glsl() { return fmt::format("#version 330 core\n{}{}", kVolume, kGradient); }
+std::string near_field_glsl(int terms) {
+  return fmt::format("#version 330 core\nconst int near_field_terms = {};\n{}", terms, kNearField);
+}
 
 }  // namespace isolux

@@ -86,11 +86,19 @@ LightShader LightTextures::kind() const {
   return {.slopes = slopes_.has_value(), .bricks = pages_.has_value(), .near_field_terms = int(terms_.size())};
 }
 
-void LightTextures::bind_volume(const ShaderProgram& program) const {
+void LightTextures::bind_near_field(const ShaderProgram& program) const {
   bind_texture(program, 2, "volume_values", *values_);
   glUniform3fv(program.uniform("grid_points"), 1, glm::value_ptr(Vec3f(volume_.size)));
   glUniformMatrix3fv(program.uniform("index_from_world"), 1, GL_FALSE,
                      glm::value_ptr(glm::mat3(glm::inverse(volume_.frame.axes))));
+  const Vec3 spacing = volume_.frame.spacing();
+  glUniform1f(program.uniform("mean_spacing"), float(std::cbrt(spacing.x * spacing.y * spacing.z)));
+  for (std::size_t t = 0; t < terms_.size(); ++t) {
+    const auto element = [&](const char* name) { return program.uniform(fmt::format("{}[{}]", name, t).c_str()); };
+    glUniform1f(element("near_field_step"), terms_[t].step);
+    glUniform1f(element("near_field_mean"), terms_[t].mean);
+    glUniform3fv(element("near_field_weight"), 1, glm::value_ptr(terms_[t].weight));
+  }
 }
 
 void LightTextures::bind(const ShaderProgram& program) const {
@@ -100,7 +108,6 @@ void LightTextures::bind(const ShaderProgram& program) const {
     glUniform3fv(program.uniform("light_page_count"), 1, glm::value_ptr(Vec3f(pages_->size())));
     glUniform3fv(program.uniform("atlas_texels"), 1, glm::value_ptr(Vec3f(offsets_.size())));
   }
-  if (values_) bind_volume(program);
   if (slopes_) {
     bind_texture(program, 1, "light_slopes", *slopes_);
     glUniform1f(program.uniform("light_slope_gain"), slope_gain_);
@@ -111,15 +118,6 @@ void LightTextures::bind(const ShaderProgram& program) const {
   glUniform3fv(program.uniform("light_offset"), 1, glm::value_ptr(Vec3f(mapping_.offset)));
   glUniform1f(program.uniform("reference_isovalue"), reference_isovalue_);
   glUniform1f(program.uniform("light_ceiling"), ceiling_);
-  if (terms_.empty()) return;
-  const Vec3 spacing = volume_.frame.spacing();
-  glUniform1f(program.uniform("mean_spacing"), float(std::cbrt(spacing.x * spacing.y * spacing.z)));
-  for (std::size_t t = 0; t < terms_.size(); ++t) {
-    const auto element = [&](const char* name) { return program.uniform(fmt::format("{}[{}]", name, t).c_str()); };
-    glUniform1f(element("near_field_step"), terms_[t].step);
-    glUniform1f(element("near_field_mean"), terms_[t].mean);
-    glUniform3fv(element("near_field_weight"), 1, glm::value_ptr(terms_[t].weight));
-  }
 }
 
 }  // namespace isolux::viewer

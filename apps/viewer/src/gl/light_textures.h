@@ -30,8 +30,8 @@ class LightTextures {
 
   /// What its shader needs to know.
   [[nodiscard]] LightShader kind() const;
-  /// Sets the uniforms of volume_gradient_glsl() of the program in use and binds the volume. \pre near-field terms
-  void bind_volume(const ShaderProgram& program) const;
+  /// Sets the uniforms of near_field_glsl() of the program in use and binds the volume. \pre near-field terms
+  void bind_near_field(const ShaderProgram& program) const;
   /// Sets the uniforms of the program in use and binds the textures.
   void bind(const ShaderProgram& program) const;
 

@@ -46,8 +46,7 @@ SurfaceRenderer::SurfaceRenderer(std::shared_ptr<const Volume> volume)
       radius_(box_radius(volume_->lattice())),
       local_({kSurfaceVertexShader}, {fragment_shader(Shading::kLocal), light_reader_glsl({})}),
       exact_light_({kSurfaceVertexShader}, {fragment_shader(Shading::kExact), light_reader_glsl({})}),
-      lines_({kSurfaceVertexShader}, {fragment_shader(Shading::kLines), light_reader_glsl({})}),
-      gradients_({kGradientVertexShader, volume_gradient_glsl()}, {}, "gradient") {
+      lines_({kSurfaceVertexShader}, {fragment_shader(Shading::kLines), light_reader_glsl({})}) {
   vertex_array_.bind();
   const Buffer* attributes[] = {&positions_, &normals_};
   for (GLuint i = 0; i < std::size(attributes); ++i) {
@@ -67,14 +66,20 @@ void SurfaceRenderer::set_surface(const IndexedMesh& mesh, float isovalue) {
   vertex_count_ = GLsizei(mesh.positions.size());
   index_count_ = GLsizei(mesh.triangles.size() * 3);
   isovalue_ = isovalue;
-  has_gradients_ = false;
+  for (std::optional<Light>* light : {&light_, &inner_light_})
+    if (*light && (*light)->near_field) (*light)->near_field->known = false;
   set_exact_light({});
 }
+
+SurfaceRenderer::NearFieldAtVertices::NearFieldAtVertices(int terms)
+    : program({kNearFieldVertexShader, near_field_glsl(terms)}, {}, "at_vertex") {}
 
 SurfaceRenderer::Light::Light(const Volume& volume, const IlluminationGrid& light, Side side)
     : textures(volume, light),
       program({kSurfaceVertexShader}, {fragment_shader(side == Side::kOuter ? Shading::kRead : Shading::kReadInner),
-                                       light_reader_glsl(textures.kind())}) {}
+                                       light_reader_glsl(textures.kind())}) {
+  if (const int terms = textures.kind().near_field_terms; terms > 0) near_field.emplace(terms);
+}
 
 void SurfaceRenderer::set_light(const IlluminationGrid& light) {
   light_.emplace(*volume_, light, Light::Side::kOuter);
@@ -91,21 +96,22 @@ void SurfaceRenderer::set_exact_light(std::span<const Vec3f> radiance) {
   if (has_exact_) exact_.fill(radiance.data(), radiance.size_bytes());
 }
 
-void SurfaceRenderer::compute_gradients(const LightTextures& light) {
-  if (has_gradients_) return;
-  gradient_values_.reserve(std::size_t(vertex_count_) * sizeof(Vec3f));
-  use(gradients_);
-  light.bind_volume(gradients_);
+void SurfaceRenderer::compute_near_field(Light& light) const {
+  NearFieldAtVertices& near_field = *light.near_field;
+  if (near_field.known) return;
+  near_field.values.reserve(std::size_t(vertex_count_) * sizeof(Vec3f));
+  use(near_field.program);
+  light.textures.bind_near_field(near_field.program);
   vertex_array_.bind();
   glDisableVertexAttribArray(kExtraAttribute);
   glEnable(GL_RASTERIZER_DISCARD);
-  glBindBufferBase(GL_TRANSFORM_FEEDBACK_BUFFER, 0, gradient_values_.name());
+  glBindBufferBase(GL_TRANSFORM_FEEDBACK_BUFFER, 0, near_field.values.name());
   glBeginTransformFeedback(GL_POINTS);
   glDrawArrays(GL_POINTS, 0, vertex_count_);
   glEndTransformFeedback();
   glBindBufferBase(GL_TRANSFORM_FEEDBACK_BUFFER, 0, 0);
   glDisable(GL_RASTERIZER_DISCARD);
-  has_gradients_ = true;
+  near_field.known = true;
 }
 
 void SurfaceRenderer::hand_on(const Buffer& values) const {
@@ -115,12 +121,12 @@ void SurfaceRenderer::hand_on(const Buffer& values) const {
   glEnableVertexAttribArray(kExtraAttribute);
 }
 
-void SurfaceRenderer::read_from(const Light& light, const SurfaceView& view) {
+void SurfaceRenderer::read_from(Light& light, const SurfaceView& view) {
   vertex_array_.bind();
   glDisableVertexAttribArray(kExtraAttribute);
-  if (light.textures.kind().near_field_terms > 0) {
-    compute_gradients(light.textures);
-    hand_on(gradient_values_);
+  if (light.near_field) {
+    compute_near_field(light);
+    hand_on(light.near_field->values);
   }
   use(light.program, view);
   light.textures.bind(light.program);
@@ -135,6 +141,7 @@ void SurfaceRenderer::use(const ShaderProgram& program) const {
   program.use();
   glUniform3fv(program.uniform("centre"), 1, glm::value_ptr(centre_));
   glUniformMatrix3fv(program.uniform("place_from_centred"), 1, GL_FALSE, glm::value_ptr(place));
+  glUniform1f(program.uniform("isovalue"), isovalue_);
 }
 
 void SurfaceRenderer::use(const ShaderProgram& program, const SurfaceView& view) const {
@@ -147,7 +154,6 @@ void SurfaceRenderer::use(const ShaderProgram& program, const SurfaceView& view)
   glUniform3fv(program.uniform("albedo"), 1, glm::value_ptr(view.albedo));
   glUniform1f(program.uniform("exposure"), view.exposure);
   glUniform3fv(program.uniform("line_colour"), 1, glm::value_ptr(kLineColour));
-  glUniform1f(program.uniform("isovalue"), isovalue_);
 }
 
 void SurfaceRenderer::draw(const SurfaceView& view) {

@@ -48,6 +48,15 @@ class SurfaceRenderer {
   void draw(const SurfaceView& view);
 
  private:
+  /// What a light's near field adds to e at the vertices of one surface.
+  struct NearFieldAtVertices {
+    explicit NearFieldAtVertices(int terms);
+
+    ShaderProgram program;
+    Buffer values{GL_ARRAY_BUFFER};
+    bool known = false;  ///< for the surface shown
+  };
+
   /// Textures and the shader for their kind of light.
   struct Light {
     enum class Side { kOuter, kInner };
@@ -55,17 +64,17 @@ class SurfaceRenderer {
 
     LightTextures textures;
     ShaderProgram program;
+    std::optional<NearFieldAtVertices> near_field;
   };
 
   /// Puts the program into use with what vertices need.
   void use(const ShaderProgram& program) const;
-  /// The same with what every kind of light needs.
+  /// The same with what drawing needs.
   void use(const ShaderProgram& program, const SurfaceView& view) const;
-  /// The volume's gradient at the vertices where the light needs it, once for all frames: pixels would fetch the volume
-  /// six times each. Needs a framebuffer, though it draws nothing.
-  void compute_gradients(const LightTextures& light);
-  void read_from(const Light& light, const SurfaceView& view);
-  /// e or gradient: what the vertex shader hands on.
+  /// Once for all frames: pixels would fetch the volume ten times each. Needs a framebuffer, though it draws nothing.
+  void compute_near_field(Light& light) const;
+  void read_from(Light& light, const SurfaceView& view);
+  /// e or what the near field adds to it: what the vertex shader hands on.
   void hand_on(const Buffer& values) const;
 
   std::shared_ptr<const Volume> volume_;
@@ -74,18 +83,15 @@ class SurfaceRenderer {
   ShaderProgram local_;
   ShaderProgram exact_light_;
   ShaderProgram lines_;
-  ShaderProgram gradients_;
   VertexArray vertex_array_;
   Buffer positions_{GL_ARRAY_BUFFER};
   Buffer normals_{GL_ARRAY_BUFFER};
   Buffer exact_{GL_ARRAY_BUFFER};
-  Buffer gradient_values_{GL_ARRAY_BUFFER};  ///< of the volume, for the near field
   Buffer indices_{GL_ELEMENT_ARRAY_BUFFER};
   GLsizei vertex_count_ = 0;
   GLsizei index_count_ = 0;
   float isovalue_ = 0.0f;
   bool has_exact_ = false;
-  bool has_gradients_ = false;
   std::optional<Light> light_;
   std::optional<Light> inner_light_;
 };

@@ -63,13 +63,14 @@ struct LightShader {
 };
 
 /// The formula for one kind of light as a shader of its own in GLSL 3.30, to be linked to one that declares and calls
-/// `vec3 read_light(vec3 place, float isovalue, vec3 gradient)`: place in the volume's box from 0 to 1, and the
-/// volume's gradient there in world space, of which only near-field terms make use. It needs the uniforms that its
-/// first lines declare. Kinds are constants of the shader: one that branched on uniforms would pay for all of them.
+/// `vec3 read_light(vec3 place, float isovalue, vec3 near_field)`: place in the volume's box from 0 to 1, and the sum
+/// over near-field terms there. It needs the uniforms that its first lines declare. Kinds are constants of the shader:
+/// one that branched on uniforms would pay for all of them.
 [[nodiscard]] std::string light_reader_glsl(const LightShader& kind);
 
-/// `vec3 volume_gradient(vec3 place)` as a shader likewise, for any stage: six fetches of the volume. Between the
-/// vertices of a triangle that lies in one cell it may be interpolated.
-[[nodiscard]] std::string volume_gradient_glsl();
+/// `vec3 near_field(vec3 place, float isovalue)`, the sum over near-field terms, as a shader likewise, for any stage:
+/// six fetches of the volume and one a term. It may be computed at a surface's vertices and interpolated between them
+/// (docs/resampling.md has what that does to the error). \pre terms > 0
+[[nodiscard]] std::string near_field_glsl(int terms);
 
 }  // namespace isolux
