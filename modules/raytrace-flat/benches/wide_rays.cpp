@@ -83,7 +83,9 @@ Sites bake_sites(const Volume& volume, std::size_t count) {
 
 void gather_rays(benchmark::State& state, const Case& test, RayQuestion question, int threads) {
   const Volume& volume = volume_of(test);
-  const std::size_t bake = std::min<std::size_t>(volume.lattice().count() / 16, 262144);
+  // From 256^3 on as dense, so that occupancies weigh the same.
+  const std::size_t count = volume.lattice().count();
+  const std::size_t bake = std::min(count / 16, std::max<std::size_t>(262144, count / 64));
   const Sites sites = bake_sites(volume, bake);
   Run run;
   run.threads = threads;
