@@ -130,10 +130,10 @@ void sweep(benchmark::State& state, const Subject& subject, IsoExtractor::Index 
   report_sweep(state, triangles);
 }
 
-void index_build(benchmark::State& state, const Subject& subject) {
+void index_build(benchmark::State& state, const Subject& subject, IsoExtractor::Index index) {
   const Volume* volume = volume_of(subject);
   if (volume == nullptr) return state.SkipWithError("ISOLUX_DATA is not set");
-  for (auto _ : state) IsoExtractor(*volume, run_of(state), IsoExtractor::Index::kBricks);
+  for (auto _ : state) IsoExtractor(*volume, run_of(state), index);
 }
 
 void backend(benchmark::State& state, const Subject& subject, const std::string& name) {
@@ -255,12 +255,15 @@ void register_dense(const Subject& subject) {
   add(subject, "indexed_fresh", fresh<IndexedMesh>);
   add(subject, "indexed_kept", [](auto& state, auto& s) { kept<IndexedMesh>(state, s, Index::kNone); });
   add(subject, "indexed_kept_index", [](auto& state, auto& s) { kept<IndexedMesh>(state, s, Index::kBricks); });
+  add(subject, "indexed_kept_bytes", [](auto& state, auto& s) { kept<IndexedMesh>(state, s, Index::kBricksAndBytes); });
   add(subject, "half_edges_fresh", fresh<IsoMesh>);
   add(subject, "half_edges_kept", [](auto& state, auto& s) { kept<IsoMesh>(state, s, Index::kNone); });
   add(subject, "half_edges_kept_index", [](auto& state, auto& s) { kept<IsoMesh>(state, s, Index::kBricks); });
+  add(subject, "half_edges_kept_bytes", [](auto& state, auto& s) { kept<IsoMesh>(state, s, Index::kBricksAndBytes); });
   add(subject, "sweep", [](auto& state, auto& s) { sweep(state, s, Index::kNone); });
   add(subject, "sweep_index", [](auto& state, auto& s) { sweep(state, s, Index::kBricks); });
-  add(subject, "index_build", index_build);
+  add(subject, "index_build", [](auto& state, auto& s) { index_build(state, s, Index::kBricks); });
+  add(subject, "index_build_bytes", [](auto& state, auto& s) { index_build(state, s, Index::kBricksAndBytes); });
   add(subject, "openmesh_add_face", openmesh_add_face);
   const Registry<Extractor> registry = extractors();
   for (const BackendInfo& info : registry.backends())
@@ -274,7 +277,7 @@ void register_sparse(const Subject& subject) {
   add(subject, "indexed_kept", [](auto& state, auto& s) { kept<IndexedMesh>(state, s, Index::kNone); });
   add(subject, "indexed_kept_index", [](auto& state, auto& s) { kept<IndexedMesh>(state, s, Index::kBricks); });
   add(subject, "half_edges_kept_index", [](auto& state, auto& s) { kept<IsoMesh>(state, s, Index::kBricks); });
-  add(subject, "index_build", index_build);
+  add(subject, "index_build", [](auto& state, auto& s) { index_build(state, s, Index::kBricks); });
 }
 
 }  // namespace

@@ -14,9 +14,9 @@ namespace isolux {
 class IsoExtractor::Implementation {
  public:
   Implementation(const Volume& volume, const Run& run, Index index) : volume_(&volume), march_(volume) {
-    if (index != Index::kBricks) return;
+    if (index == Index::kNone) return;
     index_.emplace(volume, run);
-    march_.keep_bytes(volume, run);
+    if (index == Index::kBricksAndBytes) march_.keep_bytes(volume, run);
   }
 
   void extract(const ExtractSettings& settings, const Run& asked, IndexedMesh& mesh) {
@@ -33,7 +33,7 @@ class IsoExtractor::Implementation {
       mesh = mc::build_mesh(indexed);
       return;
     }
-    const mc::MeshSize size = march_.count(settings, run, index());
+    const mc::MeshSize size = march_.count(settings, run, index(), mc::vertex_room(mesh));
     const mc::MeshMemory memory = mc::reserve_mesh(mesh, size);
     if (size.triangles == 0) return;
     std::function<void(const mc::MeshSize&)> reach;

@@ -26,14 +26,14 @@ constexpr int word_of(std::uint32_t packed) { return int(packed & ((1U << kWordB
 
 /// For each kind of thing its number: within a slab (of a row's first) or in the mesh (of a slab's first).
 struct Counts {
-  std::uint32_t vertex_x = 0;  ///< vertices on edges along x, y, z
-  std::uint32_t vertex_y = 0;
-  std::uint32_t vertex_z = 0;
-  std::uint32_t face_x = 0;  ///< mesh edges on faces across x, y, z
-  std::uint32_t face_y = 0;
-  std::uint32_t face_z = 0;
-  std::uint32_t inner = 0;  ///< mesh edges inside cells
-  std::uint32_t triangle = 0;
+  std::uint32_t vertex_x;  ///< vertices on edges along x, y, z
+  std::uint32_t vertex_y;
+  std::uint32_t vertex_z;
+  std::uint32_t face_x;  ///< mesh edges on faces across x, y, z
+  std::uint32_t face_y;
+  std::uint32_t face_z;
+  std::uint32_t inner;  ///< mesh edges inside cells
+  std::uint32_t triangle;
 };
 
 /// The mixed cells of a slab along its rows: what connecting them needs, so that bits are looked at once only.
@@ -56,8 +56,8 @@ struct CellList {
 struct Slab {
   std::uint32_t active_words = 0;
   CellList cells;
-  Counts total;
-  Counts first;
+  Counts total{};
+  Counts first{};
 };
 
 /// How much there is of each kind in the mesh.

@@ -16,6 +16,9 @@ struct MeshMemory {
   float* normals = nullptr;
 };
 
+/// The vertices that a mesh holds already, to be written over; none where it is empty.
+[[nodiscard]] VertexRoom vertex_room(IsoMesh& mesh);
+
 /// Reserves memory for as much, fresh memory in huge pages, and gives the arrays, which may hold anything; of what the
 /// mesh held no more is kept than that. Their layout is OpenMesh 9's; the size of each item is asserted, the order of
 /// its parts tested against OpenMesh's own accessors.

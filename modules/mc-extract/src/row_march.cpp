@@ -165,8 +165,18 @@ void RowMarch::march(const ExtractSettings& settings, const Run& run, const Bric
   pipeline.run(run);
 }
 
-MeshSize RowMarch::count(const ExtractSettings& settings, const Run& run, const BrickIndex* index) {
+MeshSize RowMarch::count(const ExtractSettings& settings, const Run& run, const BrickIndex* index,
+                         const VertexRoom& room) {
   begin(settings, run, index);
+  const auto fits = [&](int layer) {
+    const Slab& last = slabs_[std::size_t(slabs_of(layer).end) - 1];
+    return std::size_t(last.first.vertex_z) + last.total.vertex_z <= room.vertices;
+  };
+  std::function<void(int)> write;
+  if (room.vertices > 0)
+    write = [&](int layer) {
+      if (fits(layer)) write_vertices(layer, room.positions, room.normals);
+    };
   LayerPipeline pipeline(layer_count(), {.classify = [&](int layer) { classify_layer(layer); },
                                          .count = [&](int layer) { count_layer(layer, Connectivity::kHalfEdges); },
                                          .number =
@@ -175,9 +185,11 @@ MeshSize RowMarch::count(const ExtractSettings& settings, const Run& run, const 
                                                return false;
                                              },
                                          .grow = {},
-                                         .write = {},
+                                         .write = write,
                                          .connect = {}});
   pipeline.run(run);
+  layers_with_vertices_ = 0;
+  while (layers_with_vertices_ < layer_count() && fits(layers_with_vertices_)) ++layers_with_vertices_;
   return size_;
 }
 

@@ -38,10 +38,13 @@ class RowMarch {
   /// The mesh's memory is used again and grows as needed.
   void march(const ExtractSettings& settings, const Run& run, const BrickIndex* index, IndexedMesh& mesh);
 
-  /// For half-edges, whose kernel takes its size beforehand. First half: what there is.
-  [[nodiscard]] MeshSize count(const ExtractSettings& settings, const Run& run, const BrickIndex* index);
-  /// Second half. With `reach` the mesh does not hold all of it yet: reach(size) is called before more is written, one
-  /// call at a time.
+  /// For half-edges, whose kernel takes its size beforehand. First half: what there is, and the vertices of the layers
+  /// that fit `room`, while their values are in the cache.
+  [[nodiscard]] MeshSize count(const ExtractSettings& settings, const Run& run, const BrickIndex* index,
+                               const VertexRoom& room);
+  /// Second half: the other vertices and the half-edges. The first vertices are where count() wrote them, or what it
+  /// wrote was copied. With `reach` the mesh does not hold all of it yet: reach(size) is called before more is written,
+  /// one call at a time.
   void write(const Run& run, const std::function<void(const MeshSize&)>& reach, float* positions, float* normals,
              const HalfEdgeArrays& out) const;
 
@@ -81,6 +84,7 @@ class RowMarch {
   const BrickIndex* index_ = nullptr;  ///< where the sparse way is taken
   ActiveWords active_words_;
   MeshSize size_;
+  int layers_with_vertices_ = 0;  ///< the first ones, which count() wrote
 };
 
 }  // namespace isolux::mc

@@ -94,6 +94,9 @@ MeshSize RowMarch::size_up_to(int layer) const {
 
 void RowMarch::write(const Run& run, const std::function<void(const MeshSize&)>& reach, float* positions,
                      float* normals, const HalfEdgeArrays& out) const {
+  const auto write_vertices_of = [&](int layer) {
+    if (layer >= layers_with_vertices_) write_vertices(layer, positions, normals);
+  };
   if (reach) {
     const auto nothing = [](int) {};
     LayerPipeline pipeline(layer_count(), {.classify = nothing,
@@ -104,13 +107,13 @@ void RowMarch::write(const Run& run, const std::function<void(const MeshSize&)>&
                                                  return false;
                                                },
                                            .grow = {},
-                                           .write = [&](int layer) { write_vertices(layer, positions, normals); },
+                                           .write = write_vertices_of,
                                            .connect = [&](int layer) { write_half_edges(layer, out); }});
     pipeline.run(run);
   } else {
     // One after the other: in turn they would drive each other's memory from the cache.
     const auto layers = std::size_t(layer_count());
-    parallel_blocks(layers, 1, run, "", [&](const Block& b) { write_vertices(int(b.index), positions, normals); });
+    parallel_blocks(layers, 1, run, "", [&](const Block& b) { write_vertices_of(int(b.index)); });
     parallel_blocks(layers, 1, run, "", [&](const Block& b) { write_half_edges(int(b.index), out); });
   }
   link_border(run, out);

@@ -155,7 +155,7 @@ HWY_INLINE void visit_slab(const MarchState& march, int k, const Visit& visit) {
 template <Connectivity kConnectivity>
 void count_slab_wide(MarchState& march, int k, const std::uint32_t* candidates, std::size_t candidate_count) {
   const CaseTable& cases = case_table(CaseTable::Winding::kOutwards);  // counts are the same for both
-  Counts counts;
+  Counts counts{};
   std::uint32_t* active = march.slab_active(k);
   Counts* rows = march.slab_rows(k);
   CellList& list = march.slabs[k].cells;

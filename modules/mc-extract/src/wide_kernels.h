@@ -47,6 +47,13 @@ struct VertexFrame {
   float margin;
 };
 
+/// Vertices that a mesh holds already, and may be written over.
+struct VertexRoom {
+  float* positions = nullptr;
+  float* normals = nullptr;
+  std::size_t vertices = 0;
+};
+
 /// Writes the vertices of slab k to their places in the mesh: 3 floats a vertex, world space.
 void make_vertices(const MarchState& march, int k, const VertexFrame& frame, float* positions, float* normals);
 

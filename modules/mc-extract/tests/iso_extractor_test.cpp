@@ -49,10 +49,7 @@ std::vector<std::array<Corner, 3>> sorted_triangles(const IndexedMesh& mesh) {
 }
 
 /// Values in steps of 1/256, so that positions are the same in float and in double at the rounding above but for ties.
-Volume stepped_noise(const Index3& size, std::uint64_t seed) {
-  Volume volume = noise(size, seed, 256);
-  return volume;
-}
+Volume stepped_noise(const Index3& size, std::uint64_t seed) { return noise(size, seed, 256); }
 
 TEST(IsoExtractor, AgreesWithThePlainWay) {
   for (int seed = 0; seed < 50; ++seed) {
@@ -200,6 +197,23 @@ TEST(IsoExtractor, UsesAMeshAgainWithoutATrace) {
   }
 }
 
+TEST(IsoExtractor, WritesOverAMeshThatIsTooSmall) {
+  // Vertices of the first layers are written where the last mesh's lay, and moved when it has to grow.
+  const Volume volume = gyroid(50);
+  for (const int threads : {1, 3}) {
+    IsoExtractor extractor(volume);
+    for (const float small : {1.45f, 1.2f, 0.9f}) {
+      IsoMesh kept;
+      extractor.extract({.isovalue = small}, {.threads = threads}, kept);
+      IsoMesh expected;
+      extractor.extract({.isovalue = 0.1f}, {.threads = threads}, expected);
+      ASSERT_LT(kept.n_vertices(), expected.n_vertices());
+      extractor.extract({.isovalue = 0.1f}, {.threads = threads}, kept);
+      EXPECT_TRUE(isolux::testing::identical(kept, expected)) << small;
+    }
+  }
+}
+
 TEST(IsoExtractor, BothMeshesAreOne) {
   const Volume volume = noise(Index3(20, 70, 11), 8);
   for (const NormalKind normals : {NormalKind::kGradient, NormalKind::kFaces}) {
@@ -233,15 +247,16 @@ TEST(IsoExtractor, GivesTheSameBitsOnEveryInstructionSet) {
   for (const Volume& volume : {noise(Index3(75, 20, 13), 21), noise(Index3(75, 20, 13), 22, 256),
                                noise(Index3(60, 9, 5), 23, 3), noise(Index3(600, 5, 4), 24)}) {
     const ExtractSettings settings{.isovalue = volume.values(0, 0, 0)};
-    const IndexedMesh expected = indexed(volume, settings, IsoExtractor::Index::kBricks);
-    on_every_instruction_set(
-        [&] { EXPECT_TRUE(identical(expected, indexed(volume, settings, IsoExtractor::Index::kBricks))); });
+    for (const IsoExtractor::Index index : {IsoExtractor::Index::kBricks, IsoExtractor::Index::kBricksAndBytes}) {
+      const IndexedMesh expected = indexed(volume, settings, index);
+      on_every_instruction_set([&] { EXPECT_TRUE(identical(expected, indexed(volume, settings, index))); });
+    }
   }
 }
 
 TEST(IsoExtractor, ReadsBytesAndFloatsAlike) {
   const Volume volume = noise(Index3(130, 21, 17), 5, 256);
-  IsoExtractor bytes(volume);
+  IsoExtractor bytes(volume, {}, IsoExtractor::Index::kBricksAndBytes);
   IsoExtractor floats(volume, {}, IsoExtractor::Index::kNone);
   for (const OuterSide outer : {OuterSide::kLower, OuterSide::kHigher}) {
     for (const float isovalue :
