@@ -11,6 +11,7 @@ namespace {
 
 constexpr std::size_t kTerms = kNearFieldSteps.size();
 using Terms = std::array<double, kTerms>;
+static_assert(kTerms == 4, "terms are added beside four corners");
 
 }  // namespace
 
@@ -62,8 +63,9 @@ void FitSystem::measure_near_field(const Volume& volume, const SampleSet& sample
   parallel_blocks(rows_.size(), 4096, run, "", [&](const Block& block) {
     for (std::size_t r = block.begin; r < block.end; ++r) {
       const Vec3 position(samples.sites.positions[rows_[r].sample]);
+      const Vec3 gradient = near_field.gradient(position);
       for (std::size_t t = 0; t < kTerms; ++t) {
-        rows_[r].openness[t] = near_field.openness(position, double(rows_[r].isovalue), steps_[t]);
+        rows_[r].openness[t] = near_field.openness(position, gradient, double(rows_[r].isovalue), steps_[t]);
         sums[block.index][t] += double(rows_[r].openness[t]);
       }
     }
@@ -179,21 +181,26 @@ FitVector FitSystem::normal_product(const FitVector& x, const FitDamping& dampin
     std::array<float, 8> slopes{};
     std::array<float, 8> value_sums{};
     std::array<float, 8> slope_sums{};
+    Terms term_sums{};
     for (unsigned q = 0; q < 8; ++q) {
       values[q] = x.values[corners.texel[q]];
       slopes[q] = sloped ? x.slopes[corners.texel[q]] : 0.0f;
     }
     for (const Row& row : rows) {
       corners.weights(row.place, row.isovalue, w, s);
-      float read = 0.0f;
-      for (unsigned q = 0; q < 8; ++q) read += w[q] * values[q] + s[q] * slopes[q];
-      for (std::size_t t = 0; t < kTerms; ++t) read += row.openness[t] * terms[t];
+      // Four sums side by side, which fit a vector.
+      std::array<float, 4> parts{};
+      for (unsigned q = 0; q < 4; ++q)
+        parts[q] = (w[q] * values[q] + s[q] * slopes[q]) + (w[q + 4] * values[q + 4] + s[q + 4] * slopes[q + 4]) +
+                   row.openness[q] * terms[q];
+      const float read = (parts[0] + parts[1]) + (parts[2] + parts[3]);
       for (unsigned q = 0; q < 8; ++q) {
         value_sums[q] += w[q] * read;
         slope_sums[q] += s[q] * read;
       }
-      for (std::size_t t = 0; t < kTerms; ++t) layers[layer][t] += double(row.openness[t]) * double(read);
+      for (std::size_t t = 0; t < kTerms; ++t) term_sums[t] += double(row.openness[t]) * double(read);
     }
+    for (std::size_t t = 0; t < kTerms; ++t) layers[layer][t] += term_sums[t];
     for (unsigned q = 0; q < 8; ++q) {
       y.values[corners.texel[q]] += value_sums[q];
       if (sloped) y.slopes[corners.texel[q]] += slope_sums[q];

@@ -22,12 +22,13 @@ struct FitCorners {
   /// The reading's weights of the texels' values, and of their slopes, at a place in the cell (0 to 1).
   void weights(const std::array<float, 3>& place, float at_isovalue, std::array<float, 8>& value,
                std::array<float, 8>& slope) const {
-    for (unsigned q = 0; q < 8; ++q) {
-      float w = 1.0f;
-      for (unsigned a = 0; a < 3; ++a) w *= (q >> a & 1u) != 0 ? place[a] : 1.0f - place[a];
-      value[q] = w;
-      slope[q] = w * (at_isovalue - isovalue[q]) * inverse_breadth[q];
+    const std::array<float, 4> xy = {(1.0f - place[0]) * (1.0f - place[1]), place[0] * (1.0f - place[1]),
+                                     (1.0f - place[0]) * place[1], place[0] * place[1]};
+    for (unsigned q = 0; q < 4; ++q) {
+      value[q] = xy[q] * (1.0f - place[2]);
+      value[q + 4] = xy[q] * place[2];
     }
+    for (unsigned q = 0; q < 8; ++q) slope[q] = value[q] * (at_isovalue - isovalue[q]) * inverse_breadth[q];
   }
 };
 

@@ -14,7 +14,14 @@ NearField::NearField(const Volume& volume)
 }
 
 float NearField::openness(const Vec3& index, double isovalue, double step) const {
-  const Vec3 gradient = field_.world_gradient(index, GradientKind::kCentralDifferences);
+  return openness(index, gradient(index), isovalue, step);
+}
+
+Vec3 NearField::gradient(const Vec3& index) const {
+  return field_.world_gradient(index, GradientKind::kCentralDifferences);
+}
+
+float NearField::openness(const Vec3& index, const Vec3& gradient, double isovalue, double step) const {
   const double steepness = glm::length(gradient);
   if (!(steepness > 0.0)) return 0.0f;
   const double length = step * spacing_;

@@ -16,6 +16,9 @@ class NearField {
 
   /// -1 (closed) to 1 (open) at a point of index space; 0 where there is no gradient. `step` as in NearFieldTerm.
   [[nodiscard]] float openness(const Vec3& index, double isovalue, double step) const;
+  /// The same with the gradient there, for several steps.
+  [[nodiscard]] float openness(const Vec3& index, const Vec3& gradient, double isovalue, double step) const;
+  [[nodiscard]] Vec3 gradient(const Vec3& index) const;
   /// The sign of steps towards the outer side: the sites' normals know which that is.
   [[nodiscard]] double outwards(const Sites& sites) const;
   [[nodiscard]] const TrilinearField& field() const { return field_; }
