@@ -38,7 +38,8 @@ KeptRays::KeptRays(const Volume& volume, const Scene& scene, const BakeSettings&
   const LinkSettings request{.rays = has_target(settings_) ? kFirstRays : settings_.trace.rays,
                              .outer = scene.outer,
                              .ends = settings_.trace.bounces == 0 ? LinkEnds::kDropped : LinkEnds::kKept,
-                             .texels = texels_};
+                             .texels = texels_,
+                             .nets = has_target(settings_) ? RayNets::kIndependent : RayNets::kInterleaved};
   links_ = std::make_unique<LightLinks>(volume, std::move(found.sites), request, run);
   trace_seconds_ = watch.seconds();
 }

@@ -20,8 +20,10 @@ TraceCounters gather(const Volume& volume, const Sites& sites, const GatherSetti
   if (!settings.keys.empty() && settings.keys.size() != sites.size())
     throw InvalidInput(
         fmt::format("{} keys for {} sites; there must be one of each", settings.keys.size(), sites.size()));
-  const wide::Aimer aimer(volume.lattice().frame, run.seed, std::size_t(settings.rays),
-                          std::size_t(settings.first_ray));
+  if (settings.nets == RayNets::kInterleaved && (settings.first_ray > 0 || !settings.keys.empty()))
+    throw InvalidInput("interleaved nets go without keys and from the first ray on");
+  const wide::Aimer aimer(volume.lattice().frame, run.seed, std::size_t(settings.rays), std::size_t(settings.first_ray),
+                          settings.nets, sites);
   const wide::BlockRequest request{
       .outer = settings.outer, .rays_per_site = aimer.rays(), .sites_per_block = aimer.sites_per_batch()};
   const auto question = settings.question == RayQuestion::kAnyHit ? wide::Question::kAnyHit : wide::Question::kFirstHit;

@@ -127,11 +127,13 @@ void LightLinks::trace(std::size_t first, std::size_t rays, std::span<const std:
   Run own = run;
   own.seed = seed_;
   const auto question = settings_.ends == LinkEnds::kDropped ? RayQuestion::kAnyHit : RayQuestion::kFirstHit;
-  const RoundRequest request{.first = first, .rays = rays, .outer = settings_.outer, .question = question};
+  const RoundRequest request{
+      .first = first, .rays = rays, .outer = settings_.outer, .question = question, .nets = settings_.nets};
   rounds_->all.push_back(trace_round(volume_, sites_, numbers, rounds_->targets.get(), request, own, counters_));
 }
 
 void LightLinks::extend(std::span<const std::uint32_t> sites, const Run& run) {
+  if (settings_.nets == RayNets::kInterleaved) throw InvalidInput("links of interleaved nets take no more rays");
   std::map<std::uint32_t, std::vector<std::uint32_t>> by_rays;
   for (const std::uint32_t site : sites) by_rays[rays_[site]].push_back(site);
   for (const auto& [rays, numbers] : by_rays) {
@@ -152,6 +154,7 @@ void LightLinks::extend(std::span<const std::uint32_t> sites, const Run& run) {
 void LightLinks::append(const Sites& more, const Run& run) {
   if (settings_.ends == LinkEnds::kKept)
     throw InvalidInput("links that know the sites at the texels take no more sites");
+  if (settings_.nets == RayNets::kInterleaved) throw InvalidInput("links of interleaved nets take no more sites");
   if (more.size() == 0) return;
   std::vector<std::uint32_t> numbers(more.size());
   std::iota(numbers.begin(), numbers.end(), std::uint32_t(sites_.size()));
@@ -206,8 +209,9 @@ void LightLinks::add_up(const Scene& scene, const SampleSet& lamps, std::span<co
   samples.channels = lamps.channels;
   samples.radiance.assign(lamps.radiance.size(), 0.0f);
   samples.variance.assign(lamps.variance.size(), 0.0f);
+  const RayNets nets = brought.wants_directions() ? settings_.nets : RayNets::kIndependent;
   for (const LinkRound& round : rounds_->all) {
-    const wide::Aimer aimer(volume_.lattice().frame, seed_, round.rays, round.first);
+    const wide::Aimer aimer(volume_.lattice().frame, seed_, round.rays, round.first, nets, sites_);
     parallel_blocks(round.blocks.size(), kBlocksATask, run, "", [&](const Block& task) {
       std::vector<Vec3> values(round.rays);
       wide::Batch batch;

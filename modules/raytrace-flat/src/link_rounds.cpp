@@ -104,7 +104,8 @@ LinkRound trace_round(const Volume& volume, const Sites& sites, std::span<const 
                                 .outer = request.outer,
                                 .question = request.question,
                                 .first_ray = int(request.first),
-                                .keys = numbers};
+                                .keys = numbers,
+                                .nets = request.nets};
   Sites some;
   for (const std::uint32_t site : numbers) {
     some.positions.push_back(sites.positions[site]);

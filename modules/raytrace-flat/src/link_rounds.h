@@ -72,6 +72,7 @@ struct RoundRequest {
   std::size_t rays = 0;
   OuterSide outer = OuterSide::kLower;
   RayQuestion question = RayQuestion::kFirstHit;  ///< kAnyHit: which rays hit is kept, not where
+  RayNets nets = RayNets::kIndependent;
 };
 
 /// Traces rays of those of the sites that `numbers` lists (all if empty). `targets` may be null where only hits are

@@ -44,7 +44,7 @@ class WideTracer final : public FlatTracer {
     samples.channels = is_grey(scene) ? 1 : 3;
     samples.radiance.resize(samples.size() * std::size_t(samples.channels));
     samples.variance.resize(samples.size());
-    const wide::PathWaves waves(volume, scene, settings, options_.limits, run.seed);
+    const wide::PathWaves waves(volume, scene, settings, options_.limits, run.seed, samples.sites);
     const wide::BlockRequest request{.outer = scene.outer,
                                      .rays_per_site = waves.aimer().rays(),
                                      .sites_per_block = waves.aimer().sites_per_batch()};

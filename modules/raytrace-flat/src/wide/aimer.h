@@ -2,23 +2,31 @@
 
 #include <isolux/core/random.h>
 #include <isolux/core/sample_set.h>
+#include <isolux/raytrace_flat/gather.h>
 
 #include <algorithm>
+#include <bit>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "wide/hemisphere.h"
+#include "wide/net_places.h"
 #include "wide/site_blocks.h"
 
 namespace isolux::wide {
 
-/// The first rays of sites: every site's are the same net of points with its own digital shift.
+/// The first rays of sites: every site's are the same net of points with its own digital shift, independent of all
+/// others or such that neighbours' rays are one net.
 class Aimer {
  public:
-  /// Aims rays [first, first + rays) of each site.
-  Aimer(const IndexToWorld& frame, std::uint64_t seed, std::size_t rays, std::size_t first = 0)
-      : points_(first + rays), to_index_(frame), seed_(mix_bits(seed)), rays_(rays), first_(first) {}
+  /// Aims rays [first, first + rays) of each site; interleaved nets begin at ray 0.
+  Aimer(const IndexToWorld& frame, std::uint64_t seed, std::size_t rays, std::size_t first, RayNets nets,
+        const Sites& sites)
+      : points_(first + rays), to_index_(frame), seed_(mix_bits(seed)), rays_(rays), first_(first) {
+    if (nets == RayNets::kInterleaved) places_.emplace(sites);
+  }
 
   [[nodiscard]] std::size_t rays() const { return rays_; }
   [[nodiscard]] const ToIndex& to_index() const { return to_index_; }
@@ -32,14 +40,14 @@ class Aimer {
   }
   /// The same with random numbers keyed by `key` instead of the site's place.
   void append(const Sites& sites, std::size_t site, std::size_t key, Rays& rays, Directions& world) const {
-    const std::uint64_t bits = mix_bits(seed_ + key);
+    const SobolPoint shift = shift_of(sites, site, key);
     const Vec3f& p = sites.positions[site];
     const Vec3f& n = sites.normals[site];
     const Pose pose{.position = {p.x, p.y, p.z},
                     .isovalue = sites.isovalues[site],
                     .normal = {n.x, n.y, n.z},
-                    .shift_u = std::uint32_t(bits),
-                    .shift_v = std::uint32_t(bits >> 32)};
+                    .shift_u = shift.u,
+                    .shift_v = shift.v};
     aim_hemisphere(pose, points_, first_, rays_, to_index_, rays.count, rays, world);
     rays.count += rays_;
   }
@@ -48,11 +56,20 @@ class Aimer {
   /// Enough to keep the queues full to the end, few enough to stay in the second cache.
   static constexpr std::size_t kBatch = 8192;
 
+  [[nodiscard]] SobolPoint shift_of(const Sites& sites, std::size_t site, std::size_t key) const {
+    const NetPlaces::Place place = places_ ? places_->of(sites, site) : NetPlaces::Place{.net = key, .part = 0};
+    const std::uint64_t bits = mix_bits(seed_ + place.net);
+    // The parts of a net are its points with the upper bits of their numbers changed, which is a digital shift.
+    const SobolPoint part = sobol_point(std::uint64_t(place.part) << std::bit_width(rays_ - 1));
+    return {.u = std::uint32_t(bits) ^ part.u, .v = std::uint32_t(bits >> 32) ^ part.v};
+  }
+
   SobolPoints points_;
   ToIndex to_index_;
   std::uint64_t seed_;
   std::size_t rays_;
   std::size_t first_;
+  std::optional<NetPlaces> places_{};  ///< of interleaved nets
 };
 
 /// A thread's arrays for a batch of rays, kept between batches.

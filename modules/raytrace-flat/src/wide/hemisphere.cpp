@@ -74,20 +74,28 @@ namespace isolux::wide {
 
 HWY_EXPORT(aim);
 
+SobolPoint sobol_point(std::uint64_t index) {
+  // Direction numbers: the identity (van der Corput), and Pascal's matrix modulo 2, whose columns each follow from
+  // the one before by x ^ (x >> 1).
+  SobolPoint point{0, 0};
+  std::uint32_t column_u = 1u << 31;
+  std::uint32_t column_v = 1u << 31;
+  for (; index != 0; index >>= 1) {
+    if ((index & 1) != 0) {
+      point.u ^= column_u;
+      point.v ^= column_v;
+    }
+    column_u >>= 1;
+    column_v ^= column_v >> 1;
+  }
+  return point;
+}
+
 SobolPoints::SobolPoints(std::size_t count) : u(count + kPadding), v(count + kPadding) {
   for (std::size_t i = 0; i < u.size(); ++i) {
-    // Direction numbers: the identity (van der Corput), and Pascal's matrix modulo 2, whose columns each follow from
-    // the one before by x ^ (x >> 1).
-    std::uint32_t column_u = 1u << 31;
-    std::uint32_t column_v = 1u << 31;
-    for (std::size_t bits = i; bits != 0; bits >>= 1) {
-      if ((bits & 1) != 0) {
-        u[i] ^= column_u;
-        v[i] ^= column_v;
-      }
-      column_u >>= 1;
-      column_v ^= column_v >> 1;
-    }
+    const SobolPoint point = sobol_point(i);
+    u[i] = point.u;
+    v[i] = point.v;
   }
 }
 

@@ -9,6 +9,13 @@
 
 namespace isolux::wide {
 
+/// A point of Sobol's sequence in two dimensions, as 32-bit fractions.
+struct SobolPoint {
+  std::uint32_t u;
+  std::uint32_t v;
+};
+[[nodiscard]] SobolPoint sobol_point(std::uint64_t index);
+
 /// The first points of Sobol's sequence in two dimensions as 32-bit fractions: every aligned 2^m of them are a
 /// (0,m,2)-net. Padded by kPadding.
 struct SobolPoints {

@@ -41,7 +41,7 @@ struct PathWaves::Sighting {
 };
 
 PathWaves::PathWaves(const Volume& volume, const Scene& scene, const TraceSettings& settings, const PathLimits& limits,
-                     std::uint64_t seed)
+                     std::uint64_t seed, const Sites& sites)
     : scene_(scene),
       settings_(settings),
       limits_(limits),
@@ -49,7 +49,7 @@ PathWaves::PathWaves(const Volume& volume, const Scene& scene, const TraceSettin
       field_(volume),
       environment_(scene.environment),
       lights_(scene.lights.begin(), scene.lights.end()),
-      aimer_(volume.lattice().frame, seed, std::size_t(settings.rays)),
+      aimer_(volume.lattice().frame, seed, std::size_t(settings.rays), 0, RayNets::kInterleaved, sites),
       mean_(aimer_.points(), std::size_t(settings.rays)) {}
 
 UnitPair PathWaves::numbers(const Wave& wave, const Path& path, std::uint32_t dimension) const {

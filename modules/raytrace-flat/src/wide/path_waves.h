@@ -22,7 +22,7 @@ namespace isolux::wide {
 class PathWaves {
  public:
   PathWaves(const Volume& volume, const Scene& scene, const TraceSettings& settings, const PathLimits& limits,
-            std::uint64_t seed);
+            std::uint64_t seed, const Sites& sites);
 
   [[nodiscard]] const Aimer& aimer() const { return aimer_; }
   /// Lights the sites of a block: radiance and variance of `samples`.

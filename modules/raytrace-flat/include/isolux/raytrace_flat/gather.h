@@ -20,12 +20,19 @@ enum class RayQuestion : std::uint8_t {
   kFirstHit  ///< where it does first
 };
 
+/// How the nets of neighbouring sites' rays belong together.
+enum class RayNets : std::uint8_t {
+  kIndependent,  ///< each site's is its own, and can go on (first_ray)
+  kInterleaved   ///< those of sites close together are one net: less noise in means over neighbours, the same in each
+};
+
 struct GatherSettings {
   int rays = 64;  ///< a site
   OuterSide outer = OuterSide::kLower;
   RayQuestion question = RayQuestion::kFirstHit;
   int first_ray = 0;                      ///< rays [first_ray, first_ray + rays) of each site's sequence
   std::span<const std::uint32_t> keys{};  ///< what random numbers are keyed by, one a site; empty: the site's number
+  RayNets nets = RayNets::kIndependent;
 };
 
 /// The rays of some sites and what they met, as a gather hands them over. Ray k of sites[i] is number i * rays + k of
@@ -52,6 +59,7 @@ using RaySink = std::function<void(const GatheredRays&)>;
 /// shift for each site, keyed by run.seed and the site's number: they do not depend on threads, other sites, or what
 /// the volume holds. Which sites arrive together does not depend on threads either. \pre require_usable(volume); sites
 /// inside its box with unit normals (sites of normal zero are given to the sink with directions that mean nothing).
+/// Interleaved, a site's shift also follows from its place among the sites; there are no keys and no first_ray then.
 /// \throw Cancelled; InvalidInput for volumes of 2^31 voxels or more, or rays < 1
 [[nodiscard]] TraceCounters gather(const Volume& volume, const Sites& sites, const GatherSettings& settings,
                                    const Run& run, const RaySink& sink);

@@ -5,6 +5,7 @@
 #include <isolux/core/sample_set.h>
 #include <isolux/core/volume.h>
 #include <isolux/raytrace_flat/flat_tracer.h>
+#include <isolux/raytrace_flat/gather.h>
 #include <isolux/raytrace_flat/scene.h>
 
 #include <cstddef>
@@ -28,7 +29,8 @@ struct LinkSettings {
   int rays = 64;  ///< a site, at first
   OuterSide outer = OuterSide::kLower;
   LinkEnds ends = LinkEnds::kKept;
-  std::optional<Lattice> texels{};  ///< the grid that reflected light is read from; default one texel a cell
+  std::optional<Lattice> texels{};       ///< the grid that reflected light is read from; default one texel a cell
+  RayNets nets = RayNets::kIndependent;  ///< interleaved, there are neither more rays nor more sites later
 };
 
 struct SolveSettings {
@@ -66,11 +68,11 @@ class LightLinks {
   ~LightLinks();
 
   /// Doubles the rays of the sites listed, each once: their sequences go on where they ended. `run` brings threads and
-  /// progress; the seed stays. Not at the same time as any other call.
+  /// progress; the seed stays. Not at the same time as any other call. \throw InvalidInput where nets are interleaved
   void extend(std::span<const std::uint32_t> sites, const Run& run);
 
   /// More sites, behind those that are there, with settings.rays each. Not at the same time as any other call. \throw
-  /// InvalidInput where ends are kKept, as these know the sites at the texels
+  /// InvalidInput where ends are kKept, as these know the sites at the texels, or nets are interleaved
   void append(const Sites& more, const Run& run);
 
   [[nodiscard]] const Sites& sites() const { return sites_; }

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <isolux/core/sample_set.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace isolux::wide {
+
+/// Which part of a larger net each site's rays are, so that the rays of sites close together are one net as well: means
+/// over neighbours (a fit, a filter, the trilinear reading) then lose noise faster than with independent nets. Sites of
+/// aligned cubes of 2, 4 and 8 cells share nets of 8, 64 and 512 times the rays; the cubes of 8 are independent of each
+/// other. The same idea over pixels: Ahmed & Wonka, "Screen-space blue-noise diffusion of Monte Carlo sampling error
+/// via hierarchical ordering of pixels" (SIGGRAPH Asia 2020). Immutable.
+class NetPlaces {
+ public:
+  /// Finds how densely the sites lie: one pass, a byte a cell while it lasts, and a byte a site that shares its cell.
+  explicit NetPlaces(const Sites& sites);
+
+  struct Place {
+    std::uint64_t net;   ///< sites of equal `net` share one
+    std::uint32_t part;  ///< which part of it
+  };
+  [[nodiscard]] Place of(const Sites& sites, std::size_t site) const;
+
+ private:
+  int cube_ = 0;                      ///< cells of 2^cube_ voxels an axis hold a site or so, or as many as crowd_ says
+  int crowd_ = 0;                     ///< log2 of how many sites share a cell
+  std::vector<std::uint8_t> orders_;  ///< of each site among those of its cell; empty: it has none beside it
+};
+
+}  // namespace isolux::wide
