@@ -66,6 +66,25 @@ Vec3 TrilinearField::cell_gradient(const Vec3& index) const {
           mix(mix(v[4] - v[0], v[5] - v[1], f.x), mix(v[6] - v[2], v[7] - v[3], f.x), f.y)};
 }
 
+bool TrilinearField::is_flat_around(const Vec3& index) const {
+  if (cell_gradient(index) != Vec3(0.0)) return false;
+  Index3 first;
+  Index3 last;
+  for (int a = 0; a < 3; ++a) {
+    first[a] = std::clamp(int(std::ceil(index[a])) - 1, 0, lattice_.size[a] - 1);
+    last[a] = std::clamp(int(std::floor(index[a])) + 1, 0, lattice_.size[a] - 1);
+  }
+  const float value = data_[lattice_.offset(first.x, first.y, first.z)];
+  for (int k = first.z; k <= last.z; ++k) {
+    for (int j = first.y; j <= last.y; ++j) {
+      for (int i = first.x; i <= last.x; ++i) {
+        if (data_[lattice_.offset(i, j, k)] != value) return false;
+      }
+    }
+  }
+  return true;
+}
+
 double TrilinearField::difference(int i, int j, int k, int axis) const {
   const int at[3] = {i, j, k};
   const std::ptrdiff_t stride[3] = {1, lattice_.size.x, std::ptrdiff_t(lattice_.size.x) * lattice_.size.y};
