@@ -147,9 +147,9 @@ Vec3f LightReader::at_index(const Vec3& index, double isovalue) const {
   if (self.sloped) e += slope * (isovalue - double(self.reference));
   if (!self.sloped && detail.near_field.empty()) return Vec3f(e);
   if (!detail.near_field.empty()) {
-    const Vec3 gradient = self.near_field.gradient(index);
+    const NearField::Ahead ahead = self.near_field.ahead(index);
     for (const NearFieldTerm& term : detail.near_field) {
-      const float openness = self.near_field.openness(index, gradient, isovalue, double(term.step));
+      const float openness = self.near_field.openness(index, ahead, isovalue, double(term.step));
       e += Vec3(term.weight) * double(openness - term.mean);
     }
   }

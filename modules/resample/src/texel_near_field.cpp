@@ -30,7 +30,7 @@ constexpr double kRidge = 1e-6;
 /// What the volume says of a texel.
 struct TexelPlace {
   Vec3 index;
-  Vec3 gradient;
+  NearField::Ahead ahead;
   double isovalue = 0.0;
 };
 
@@ -43,7 +43,7 @@ class TexelPlaces {
     TexelPlace place;
     place.index = Vec3(Vec3f(to_volume_.world(Vec3(i, j, k))));  // rounded as sites are
     place.isovalue = near_field_.field().value(place.index);
-    place.gradient = near_field_.gradient(place.index);
+    place.ahead = near_field_.ahead(place.index);
     return place;
   }
 
@@ -81,9 +81,9 @@ std::vector<Measured> measure(const NearField& near_field, double outwards, cons
     if (texels.lit[t] == 0) return;
     const TexelPlace place = places.at(i, j, k);
     for (int s = 0; s < 3; ++s) {
-      measured[t].openness[s] = near_field.openness(place.index, place.gradient, place.isovalue, outwards * kSteps[s]);
+      measured[t].openness[s] = near_field.openness(place.index, place.ahead, place.isovalue, outwards * kSteps[s]);
     }
-    measured[t].weight = float(std::sqrt(glm::length(place.gradient)));
+    measured[t].weight = float(std::sqrt(place.ahead.fall));
   });
   return measured;
 }
@@ -209,7 +209,7 @@ void take_off_near_field(const Volume& volume, IlluminationGrid& light, const Ru
       return;
     Vec3 sum(0.0);
     for (const NearFieldTerm& term : light.detail.near_field) {
-      const float openness = near_field.openness(place.index, place.gradient, place.isovalue, double(term.step));
+      const float openness = near_field.openness(place.index, place.ahead, place.isovalue, double(term.step));
       sum += Vec3(term.weight) * double(openness - term.mean);
     }
     for (std::size_t c = 0; c < channels; ++c) {
