@@ -127,26 +127,28 @@ TEST(LightPoints, TellTheTextureWhatItShouldSay) {
 
 TEST(LightFile, KeepsWhatLetsLightBeReadFinely) {
   const Volume volume = read_volume("gen:two-spheres:16");
-  BakeSettings settings;
-  settings.sampler.name = "stratified";
-  settings.resampler.name = "fit";
-  settings.samples = 8 * 15 * 15 * 15;
-  settings.trace.rays = 4;
-  settings.trace.bounces = 0;
-  LightFile light;
-  light.grid = bake(volume, Scene{}, settings, builtin_stages(), {}).light;
-  ASSERT_FALSE(light.grid.detail.slopes.empty());
-  ASSERT_FALSE(light.grid.detail.near_field.empty());
-  const std::string path = testing::TempDir() + "detail.nrrd";
-  write_light(light, path, volume.space);
-  const LightFile back = read_light(path);
-  EXPECT_EQ(back.grid.values, light.grid.values);
-  EXPECT_EQ(back.grid.detail.slopes, light.grid.detail.slopes);
-  const LightReader before(volume, light.grid);
-  const LightReader after(volume, back.grid);
-  for (const double x : {3.1, 7.4, 11.9}) {
-    EXPECT_EQ(before.at_index({x, 6.3, 8.8}).x,
-              after.at_index({x, 6.3, 8.8}).x);  // numbers are written to all their digits
+  for (const bool fit : {true, false}) {
+    BakeSettings settings;
+    settings.sampler.name = fit ? "stratified" : "texels";
+    settings.resampler.name = fit ? "fit" : "direct";
+    settings.samples = 8 * 15 * 15 * 15;
+    settings.trace.rays = fit ? 4 : 32;
+    settings.trace.bounces = 0;
+    LightFile light;
+    light.grid = bake(volume, Scene{}, settings, builtin_stages(), {}).light;
+    ASSERT_EQ(light.grid.detail.slopes.empty(), !fit);
+    ASSERT_FALSE(light.grid.detail.near_field.empty());
+    const std::string path = testing::TempDir() + "detail.nrrd";
+    write_light(light, path, volume.space);
+    const LightFile back = read_light(path);
+    EXPECT_EQ(back.grid.values, light.grid.values);
+    EXPECT_EQ(back.grid.detail.slopes, light.grid.detail.slopes);
+    const LightReader before(volume, light.grid);
+    const LightReader after(volume, back.grid);
+    for (const double x : {3.1, 7.4, 11.9}) {
+      EXPECT_EQ(before.at_index({x, 6.3, 8.8}).x,
+                after.at_index({x, 6.3, 8.8}).x);  // numbers are written to all their digits
+    }
   }
 }
 

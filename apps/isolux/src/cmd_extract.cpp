@@ -56,7 +56,7 @@ std::vector<Rgb8> exact_colours(const IsoMesh& mesh, const Volume& volume, const
     if (baked && !options.trace.bounces_given()) settings.bounces = light_bounces(*baked);
     if (!baked) return light_points(volume, scene, positions(mesh), settings, tracer, session.stages, session.run);
     const IlluminationGrid& grid = options.light.of_side(*baked, options.side.or_outer());
-    const LightReader reader(volume, grid, TexelStorage::kBricks);
+    const LightReader reader(volume, grid, TexelStorage::kBricks, session.run);
     return light_points(volume, scene, positions(mesh), settings, tracer, session.stages, session.run, reader);
   });
   session.report["rays"] = light.counters.rays;
@@ -68,9 +68,9 @@ std::vector<Rgb8> exact_colours(const IsoMesh& mesh, const Volume& volume, const
 }
 
 std::vector<Rgb8> baked_colours(const IsoMesh& mesh, const Volume& volume, const LightFile& light,
-                                const Options& options) {
+                                const Options& options, const Run& run) {
   const float isovalue = options.isovalue;
-  const LightReader reader(volume, options.light.of_side(light, options.side.or_outer()), TexelStorage::kBricks);
+  const LightReader reader(volume, options.light.of_side(light, options.side.or_outer()), TexelStorage::kBricks, run);
   const Vec3f albedo = light_albedo(light, isovalue);
   std::vector<Rgb8> colours;
   for (const Vec3f& p : positions(mesh)) {
@@ -134,7 +134,7 @@ void run_extract(const Options& options, Session& session) {
   if (options.exact_light) {
     colours = exact_colours(mesh, volume, scene_of_side(scene, options.side.or_outer()), light, options, session);
   } else if (light) {
-    colours = session.timed("light", [&] { return baked_colours(mesh, volume, *light, options); });
+    colours = session.timed("light", [&] { return baked_colours(mesh, volume, *light, options, session.run); });
   }
   session.timed("write", [&] {
     write_atomically_by_name(options.output, [&](const std::string& path) { write_mesh(mesh, colours, path); });

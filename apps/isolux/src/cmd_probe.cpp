@@ -85,7 +85,8 @@ void run_probe(const Options& options, Session& session) {
   const LightFile light = options.light.read(volume, session);
   const std::vector<Vec3> points = session.timed("read", [&] { return read_points(options.points); });
   const TrilinearField field(volume);
-  const LightReader reader(volume, options.light.of_side(light, options.side.or_outer()), TexelStorage::kBricks);
+  const LightReader reader(volume, options.light.of_side(light, options.side.or_outer()), TexelStorage::kBricks,
+                           session.run);
   std::size_t outside = 0;
   session.timed("write", [&] {
     write_atomically(options.output, [&](std::ostream& out) {

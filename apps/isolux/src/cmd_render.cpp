@@ -42,10 +42,11 @@ void expose(Image& image, double stops) {
 }
 
 /// Baked light as a shader. A light of both sides shows each where it is, whatever --outer says.
-Shader baked_shader(const Volume& volume, const LightFile& light, const Options& options, OuterSide outer) {
+Shader baked_shader(const Volume& volume, const LightFile& light, const Options& options, OuterSide outer,
+                    const Run& run) {
   const auto reading = [&](LevelSetSide side) -> LightAt {
     const auto reader =
-        std::make_shared<LightReader>(volume, options.light.of_side(light, side), TexelStorage::kBricks);
+        std::make_shared<LightReader>(volume, options.light.of_side(light, side), TexelStorage::kBricks, run);
     const double isovalue = double(options.isovalue);
     return [reader, isovalue](const SurfacePoint& point) { return reader->at_index(point.index, isovalue); };
   };
@@ -93,7 +94,7 @@ void run_render(const Options& options, Session& session) {
   Image image = session.timed("render", [&]() -> Image {
     if (mode == "normal") return draw(normal_shader());
     if (mode == "local") return draw(local_shader(albedo));
-    Image global = draw(baked_shader(volume, *light, options, settings.outer));
+    Image global = draw(baked_shader(volume, *light, options, settings.outer, session.run));
     expose(global, options.exposure);
     return mode == "both" ? side_by_side(draw(local_shader(albedo)), global, 4, Vec3f(1.0f)) : global;
   });

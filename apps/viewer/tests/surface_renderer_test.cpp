@@ -172,6 +172,7 @@ struct LightKind {
   int channels = 1;
   bool detail = false;
   bool bricks = false;
+  bool own = false;  ///< TexelLight::kOwn
 };
 
 class LitPixels : public testing::TestWithParam<LightKind> {};
@@ -180,7 +181,7 @@ class LitPixels : public testing::TestWithParam<LightKind> {};
 TEST_P(LitPixels, AgreeWithTheLookUpOnTheProcessor) {
   const test::EglContext context;
   if (!context) GTEST_SKIP() << context.why();
-  const auto [at_voxels, channels, detail, bricks] = GetParam();
+  const auto [at_voxels, channels, detail, bricks, own] = GetParam();
   const auto volume = std::make_shared<const Volume>(far_ball());
   const Lattice& lattice = volume->lattice();
   const Index3 cells = bricks ? Index3(62, 53, 49) : Index3(17, 31, 9);
@@ -189,7 +190,12 @@ TEST_P(LitPixels, AgreeWithTheLookUpOnTheProcessor) {
   if (bricks) light.detail.isovalues = ValueRange{.low = -0.405f, .high = -0.395f};
   constexpr float kIsovalue = -0.4f;
   const Surface surface = SurfaceMaker(volume, extractors(), {}).make({.isovalue = kIsovalue}, {}, {});
-  const ExpectedLight expected(*volume, light, surface.mesh, kIsovalue);
+  // Texels' own light shows as what a reader makes of it.
+  if (own) {
+    light.detail.texel_light = TexelLight::kOwn;
+    light.detail.slopes.clear();
+  }
+  const ExpectedLight expected(*volume, own ? LightReader(*volume, light).offsets() : light, surface.mesh, kIsovalue);
 
   SurfaceRenderer renderer(volume);
   renderer.set_surface(surface.mesh, kIsovalue);
@@ -232,11 +238,12 @@ INSTANTIATE_TEST_SUITE_P(BothLattices, LitPixels,
                                          LightKind{true, 1, false}, LightKind{true, 3, false},
                                          LightKind{false, 1, true}, LightKind{false, 3, true}, LightKind{true, 3, true},
                                          LightKind{false, 1, false, true}, LightKind{false, 1, true, true},
-                                         LightKind{false, 3, true, true}, LightKind{false, 3, false, true}),
+                                         LightKind{false, 3, true, true}, LightKind{false, 3, false, true},
+                                         LightKind{false, 1, true, false, true}, LightKind{false, 3, true, true, true}),
                          [](const auto& tested) {
                            return std::string(tested.param.at_voxels ? "voxels_" : "cells_") +
                                   std::to_string(tested.param.channels) + (tested.param.detail ? "_detailed" : "") +
-                                  (tested.param.bricks ? "_bricks" : "");
+                                  (tested.param.bricks ? "_bricks" : "") + (tested.param.own ? "_own" : "");
                          });
 
 // Pixels that a triangle covers in part have their middle beyond it, where there may be no brick. White on white: a

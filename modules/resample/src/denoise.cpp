@@ -43,9 +43,10 @@ class Denoiser {
     const double outwards = near_field.outwards(samples.sites);
     parallel_blocks(samples.size(), 512, run, "", [&](const Block& block) {
       for (std::size_t s = block.begin; s < block.end; ++s) {
+        const Vec3 at(samples.sites.positions[s]);
+        const NearField::Ahead ahead = near_field.ahead(at);
         for (std::size_t t = 0; t < kSteps.size(); ++t) {
-          openness_[s][t] = near_field.openness(Vec3(samples.sites.positions[s]), double(samples.sites.isovalues[s]),
-                                                outwards * kSteps[t]);
+          openness_[s][t] = near_field.openness(at, ahead, double(samples.sites.isovalues[s]), outwards * kSteps[t]);
         }
       }
     });

@@ -63,9 +63,9 @@ void FitSystem::measure_near_field(const Volume& volume, const SampleSet& sample
   parallel_blocks(rows_.size(), 4096, run, "", [&](const Block& block) {
     for (std::size_t r = block.begin; r < block.end; ++r) {
       const Vec3 position(samples.sites.positions[rows_[r].sample]);
-      const Vec3 gradient = near_field.gradient(position);
+      const NearField::Ahead ahead = near_field.ahead(position);
       for (std::size_t t = 0; t < kTerms; ++t) {
-        rows_[r].openness[t] = near_field.openness(position, gradient, double(rows_[r].isovalue), steps_[t]);
+        rows_[r].openness[t] = near_field.openness(position, ahead, double(rows_[r].isovalue), steps_[t]);
         sums[block.index][t] += double(rows_[r].openness[t]);
       }
     }

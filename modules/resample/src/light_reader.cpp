@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "near_field.h"
+#include "texel_near_field.h"
 
 namespace isolux {
 
@@ -86,7 +87,7 @@ struct LightReader::Impl {
   bool sloped = false;
 };
 
-LightReader::LightReader(const Volume& volume, const IlluminationGrid& light, TexelStorage storage) {
+LightReader::LightReader(const Volume& volume, const IlluminationGrid& light, TexelStorage storage, const Run& run) {
   const std::vector<float>& slopes = light.detail.slopes;
   if (!slopes.empty() && slopes.size() != light.values.size()) {
     throw InvalidInput(fmt::format("a light of {} values with {} slopes: none or as many are needed",
@@ -100,6 +101,7 @@ LightReader::LightReader(const Volume& volume, const IlluminationGrid& light, Te
                                           .bricks = {},
                                           .reference = 0.0f,
                                           .sloped = !slopes.empty()});
+  if (light.detail.texel_light == TexelLight::kOwn) take_off_near_field(volume, impl->offsets, run);
   const ValueRange all = value_range(volume);
   const ValueRange lit = light.detail.isovalues.value_or(all);
   if (impl->sloped) {
@@ -143,11 +145,14 @@ Vec3f LightReader::at_index(const Vec3& index, double isovalue) const {
     if (self.sloped) slope = Vec3(self.slopes.at_index(texel));
   }
   if (self.sloped) e += slope * (isovalue - double(self.reference));
-  for (const NearFieldTerm& term : detail.near_field) {
-    const float openness = self.near_field.openness(index, isovalue, double(term.step));
-    e += Vec3(term.weight) * double(openness - term.mean);
-  }
   if (!self.sloped && detail.near_field.empty()) return Vec3f(e);
+  if (!detail.near_field.empty()) {
+    const NearField::Ahead ahead = self.near_field.ahead(index);
+    for (const NearFieldTerm& term : detail.near_field) {
+      const float openness = self.near_field.openness(index, ahead, isovalue, double(term.step));
+      e += Vec3(term.weight) * double(openness - term.mean);
+    }
+  }
   for (int c = 0; c < 3; ++c) e[c] = std::clamp(e[c], 0.0, double(detail.ceiling));
   return Vec3f(e);
 }

@@ -13,20 +13,17 @@ NearField::NearField(const Volume& volume)
   spacing_ = std::cbrt(spacing.x * spacing.y * spacing.z);
 }
 
-float NearField::openness(const Vec3& index, double isovalue, double step) const {
-  return openness(index, gradient(index), isovalue, step);
-}
-
-Vec3 NearField::gradient(const Vec3& index) const {
-  return field_.world_gradient(index, GradientKind::kCentralDifferences);
-}
-
-float NearField::openness(const Vec3& index, const Vec3& gradient, double isovalue, double step) const {
+NearField::Ahead NearField::ahead(const Vec3& index) const {
+  const Vec3 gradient = field_.world_gradient(index, GradientKind::kCentralDifferences);
   const double steepness = glm::length(gradient);
-  if (!(steepness > 0.0)) return 0.0f;
-  const double length = step * spacing_;
-  const double ahead = field_.value(index - world_to_index_ * (gradient * (length / steepness)));
-  return float(std::clamp((isovalue - ahead) / (steepness * length), -1.0, 1.0));
+  if (!(steepness > 0.0)) return {};
+  return {.step = world_to_index_ * (gradient * (-spacing_ / steepness)), .fall = steepness * spacing_};
+}
+
+float NearField::openness(const Vec3& index, const Ahead& ahead, double isovalue, double step) const {
+  if (!(ahead.fall > 0.0)) return 0.0f;
+  const double there = field_.value(index + step * ahead.step);
+  return float(std::clamp((isovalue - there) / (ahead.fall * step), -1.0, 1.0));
 }
 
 double NearField::outwards(const Sites& sites) const {

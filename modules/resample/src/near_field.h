@@ -14,11 +14,14 @@ class NearField {
  public:
   explicit NearField(const Volume& volume);
 
+  /// One mean grid spacing towards lower values, in index space, and by how much f falls over it as the gradient says.
+  struct Ahead {
+    Vec3 step{0.0};
+    double fall = 0.0;  ///< 0 where there is no gradient
+  };
+  [[nodiscard]] Ahead ahead(const Vec3& index) const;
   /// -1 (closed) to 1 (open) at a point of index space; 0 where there is no gradient. `step` as in NearFieldTerm.
-  [[nodiscard]] float openness(const Vec3& index, double isovalue, double step) const;
-  /// The same with the gradient there, for several steps.
-  [[nodiscard]] float openness(const Vec3& index, const Vec3& gradient, double isovalue, double step) const;
-  [[nodiscard]] Vec3 gradient(const Vec3& index) const;
+  [[nodiscard]] float openness(const Vec3& index, const Ahead& ahead, double isovalue, double step) const;
   /// The sign of steps towards the outer side: the sites' normals know which that is.
   [[nodiscard]] double outwards(const Sites& sites) const;
   [[nodiscard]] const TrilinearField& field() const { return field_; }

@@ -10,27 +10,6 @@ namespace {
 
 constexpr std::size_t kSitesABlock = 4096;
 
-/// True if f is constant in every cell that touches the point: its level set there is a solid, not a surface.
-bool is_flat_around(const TrilinearField& field, const Vec3& index) {
-  if (field.cell_gradient(index) != Vec3(0.0)) return false;
-  const Lattice& lattice = field.lattice();
-  Index3 first;
-  Index3 last;
-  for (int a = 0; a < 3; ++a) {
-    first[a] = std::clamp(int(std::ceil(index[a])) - 1, 0, lattice.size[a] - 1);
-    last[a] = std::clamp(int(std::floor(index[a])) + 1, 0, lattice.size[a] - 1);
-  }
-  const float value = field.data()[lattice.offset(first.x, first.y, first.z)];
-  for (int k = first.z; k <= last.z; ++k) {
-    for (int j = first.y; j <= last.y; ++j) {
-      for (int i = first.x; i <= last.x; ++i) {
-        if (field.data()[lattice.offset(i, j, k)] != value) return false;
-      }
-    }
-  }
-  return true;
-}
-
 }  // namespace
 
 Sites make_sites(const Volume& volume, std::vector<Vec3f> positions, const SiteRequest& request, const Run& run) {
@@ -49,7 +28,7 @@ Sites make_sites(const Volume& volume, std::vector<Vec3f> positions, const SiteR
       const auto isovalue = float(field.value(index));
       if (request.isovalues && !(isovalue >= request.isovalues->low && isovalue <= request.isovalues->high)) continue;
       const Vec3 normal = field.normal(index, request.outer, request.gradient);
-      if (normal == Vec3(0.0) || is_flat_around(field, index)) continue;
+      if (normal == Vec3(0.0) || field.is_flat_around(index)) continue;
       sites.isovalues[i] = isovalue;
       sites.normals[i] = Vec3f(normal);
       kept[i] = 1;

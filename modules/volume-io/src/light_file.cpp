@@ -25,14 +25,14 @@ std::string near_field_text(const std::vector<NearFieldTerm>& terms) {
   return text;
 }
 
-std::vector<NearFieldTerm> parse_near_field(const std::string& path, const std::string& text) {
+std::vector<NearFieldTerm> parse_near_field(const std::string& path, const std::string& key, const std::string& text) {
   std::vector<NearFieldTerm> terms;
   std::istringstream parts(text);
   for (std::string part; std::getline(parts, part, ';');) {
     std::istringstream numbers(part);
     NearFieldTerm t;
     if (!(numbers >> t.step >> t.mean >> t.weight.x >> t.weight.y >> t.weight.z)) {
-      throw InvalidInput(fmt::format("{}: isolux.near_field '{}'; terms of five numbers are wanted", path, text));
+      throw InvalidInput(fmt::format("{}: {} '{}'; terms of five numbers are wanted", path, key, text));
     }
     terms.push_back(t);
   }
@@ -99,14 +99,23 @@ std::string detail_key(LevelSetSide side, const char* name) {
 
 using KeyValues = std::map<std::string, std::string>;
 
+/// Whoever knows only the first kind must not add terms to texels of the second.
+const char* near_field_name(TexelLight kind) { return kind == TexelLight::kReduced ? "near_field" : "own_near_field"; }
+
 void write_detail(const LightDetail& extra, LevelSetSide side, KeyValues& pairs) {
-  if (!extra.near_field.empty()) pairs[detail_key(side, "near_field")] = near_field_text(extra.near_field);
+  for (const TexelLight kind : {TexelLight::kReduced, TexelLight::kOwn})
+    pairs.erase(detail_key(side, near_field_name(kind)));
+  if (!extra.near_field.empty())
+    pairs[detail_key(side, near_field_name(extra.texel_light))] = near_field_text(extra.near_field);
   if (!extra.empty()) pairs[detail_key(side, "light_ceiling")] = fmt::format("{}", extra.ceiling);
 }
 
 void read_detail(const std::string& path, const KeyValues& pairs, LevelSetSide side, LightDetail& extra) {
-  if (const auto it = pairs.find(detail_key(side, "near_field")); it != pairs.end()) {
-    extra.near_field = parse_near_field(path, it->second);
+  for (const TexelLight kind : {TexelLight::kReduced, TexelLight::kOwn}) {
+    const auto it = pairs.find(detail_key(side, near_field_name(kind)));
+    if (it == pairs.end()) continue;
+    extra.near_field = parse_near_field(path, it->first, it->second);
+    extra.texel_light = kind;
   }
   if (const auto it = pairs.find(detail_key(side, "light_ceiling")); it != pairs.end()) {
     extra.ceiling = float(parse_number(path + ": " + it->first, it->second));

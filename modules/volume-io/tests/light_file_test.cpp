@@ -51,6 +51,36 @@ LightFile example_of_both(int channels, bool sloped) {
   return light;
 }
 
+// Whoever knows near-field terms of reduced texels alone must not find these, and then has plain light.
+TEST(LightFile, KeepsTheNearFieldOfTexelsOwnLightUnderItsOwnName) {
+  const test::TemporaryFolder folder;
+  LightFile light = example_of_both(1, false);
+  for (IlluminationGrid* side : {&light.grid, &*light.inner}) {
+    side->detail.near_field = {{.step = side == &light.grid ? 1.0f : -1.0f, .mean = 0.9f, .weight = Vec3f(0.1f)}};
+    side->detail.texel_light = TexelLight::kOwn;
+    side->detail.ceiling = 0.75f;
+  }
+  write_light(light, folder.file("l.nrrd"), "left-posterior-superior");
+  LightFile back = read_light(folder.file("l.nrrd"));
+  EXPECT_EQ(back.metadata.count("isolux.near_field"), 0U);
+  EXPECT_EQ(back.metadata.count("isolux.inner.near_field"), 0U);
+  EXPECT_EQ(back.metadata.at("isolux.own_near_field"), "1 0.9 0.1 0.1 0.1");
+  for (const IlluminationGrid* side : {&back.grid, &*back.inner}) {
+    ASSERT_EQ(side->detail.near_field.size(), 1U);
+    EXPECT_EQ(side->detail.near_field[0].step, side == &back.grid ? 1.0f : -1.0f);
+    EXPECT_EQ(side->detail.texel_light, TexelLight::kOwn);
+    EXPECT_EQ(side->detail.ceiling, 0.75f);
+  }
+  // Written again as another kind, it is of that kind alone.
+  back.grid.detail.texel_light = TexelLight::kReduced;
+  back.inner->detail.near_field.clear();
+  write_light(back, folder.file("l.nrrd"), "left-posterior-superior");
+  const LightFile again = read_light(folder.file("l.nrrd"));
+  EXPECT_EQ(again.grid.detail.texel_light, TexelLight::kReduced);
+  EXPECT_EQ(again.metadata.count("isolux.own_near_field"), 0U);
+  EXPECT_TRUE(again.inner->detail.near_field.empty());
+}
+
 TEST(LightFile, RoundTripsBothSides) {
   const test::TemporaryFolder folder;
   for (const int channels : {1, 3}) {

@@ -46,7 +46,7 @@ PointLight trace_surface(const Document& document, const Scene& scene, std::span
   const std::optional<Scene> lights_own = light_scene(*document.light);
   if (!lights_own) throw InvalidInput("the light does not tell its whole scene: exact light would differ from it");
   settings.bounces = light_bounces(*document.light);
-  const LightReader reader(*document.volume, document.light->grid);
+  const LightReader reader(*document.volume, document.light->grid, TexelStorage::kDense, run);
   return light_points(*document.volume, *lights_own, positions, settings, {}, stages, run, reader);
 }
 
@@ -57,7 +57,7 @@ void export_surface(const Document& document, const Stages& stages, const Backen
   std::vector<Rgb8> colours;
   if (document.light) {
     const Vec3f albedo = albedo_of(document, settings.isovalue);
-    const LightReader reader(*document.volume, document.light->grid);
+    const LightReader reader(*document.volume, document.light->grid, TexelStorage::kDense, run);
     const IndexToWorld& frame = document.volume->lattice().frame;
     colours.reserve(mesh.n_vertices());
     for (const auto v : mesh.vertices()) {

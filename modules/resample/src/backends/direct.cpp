@@ -7,7 +7,9 @@
 #include <optional>
 
 #include "denoise.h"
+#include "near_field.h"
 #include "samples.h"
+#include "texel_near_field.h"
 
 namespace isolux::backends {
 namespace {
@@ -30,9 +32,12 @@ class Direct final : public Resampler {
  public:
   struct Options {
     bool denoise = false;
+    bool near_field = true;
 
     void describe(OptionVisitor& option) {
       option("denoise", denoise, {.help = "take the rays' noise out where the samples around say that it is noise"});
+      option("near_field", near_field,
+             {.help = "say beside the texels how open the volume itself is in front of a point, for reading between"});
     }
   };
   explicit Direct(const Options& options) : options_(options) {}
@@ -42,6 +47,12 @@ class Direct final : public Resampler {
     require_samples(samples);
     return options_.denoise ? place(volume, denoised(volume, samples, run), texels, run)
                             : place(volume, samples, texels, run);
+  }
+
+  void add_detail(const Volume& volume, const SampleSet& samples, ResampledGrid& texels,
+                  const Run& run) const override {
+    if (!options_.near_field) return;
+    estimate_near_field(volume, NearField(volume).outwards(samples.sites), texels, run);
   }
 
  private:

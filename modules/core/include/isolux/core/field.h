@@ -41,6 +41,8 @@ class TrilinearField {
   /// The unit normal towards the outer side in world space, or (0,0,0) where there is none: a gradient per index step
   /// of at most 1e-7 of the largest value around is rounding noise of flat data.
   [[nodiscard]] Vec3 normal(const Vec3& index, OuterSide outer, GradientKind kind) const;
+  /// True if f is constant in every cell that touches the point: its level set there is a solid, not a surface.
+  [[nodiscard]] bool is_flat_around(const Vec3& index) const;
   /// Central difference at a grid point along one axis (one-sided on the faces), per index step.
   [[nodiscard]] double difference(int i, int j, int k, int axis) const;
 

@@ -4,6 +4,7 @@
 #include <isolux/core/volume.h>
 
 #include <cstddef>
+#include <cstdint>
 #include <limits>
 #include <optional>
 #include <vector>
@@ -17,11 +18,18 @@ struct NearFieldTerm {
   Vec3f weight{0.0f};  ///< change of e per unit of openness, by channel
 };
 
+/// What the values are where there are near-field terms.
+enum class TexelLight : std::uint8_t {
+  kReduced,  ///< less the terms' sum at the texels
+  kOwn       ///< the texels' own light, so that it is right without the terms too
+};
+
 /// What lets light be read more finely than the texels are, with the volume at hand (isolux/resample/light_reader.h).
 /// Empty in a plain grid; a reader that does not know it reads the values alone.
 struct LightDetail {
   std::vector<float> slopes;  ///< change of e per unit of the isovalue about each texel, in the order of the values
   std::vector<NearFieldTerm> near_field;
+  TexelLight texel_light = TexelLight::kReduced;
   float ceiling = std::numeric_limits<float>::infinity();  ///< no light is above it (nor below 0)
   std::optional<ValueRange> isovalues{};  ///< the level sets that were lit; texels that none of them touches may be 0
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <isolux/core/illumination_grid.h>
+#include <isolux/core/run.h>
 #include <isolux/core/volume.h>
 #include <isolux/resample/light_bricks.h>
 
@@ -24,8 +25,10 @@ enum class TexelStorage {
 /// plain grid is read trilinearly. Immutable, callable from many threads; the volume must outlive it.
 class LightReader {
  public:
-  /// One pass over the grid. \throw InvalidInput if the detail does not match the grid.
-  LightReader(const Volume& volume, const IlluminationGrid& light, TexelStorage storage = TexelStorage::kDense);
+  /// One pass over the grid; where it has near-field terms and TexelLight::kOwn, some tenths of a microsecond a texel
+  /// on all threads of `run`. \throw InvalidInput if the detail does not match the grid; Cancelled
+  LightReader(const Volume& volume, const IlluminationGrid& light, TexelStorage storage = TexelStorage::kDense,
+              const Run& run = {});
   ~LightReader();
   LightReader(LightReader&&) noexcept;
   LightReader& operator=(LightReader&&) noexcept;

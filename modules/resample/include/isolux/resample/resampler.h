@@ -28,6 +28,11 @@ class Resampler {
   /// not suit; Cancelled
   [[nodiscard]] virtual ResampledGrid resample(const Volume& volume, const SampleSet& samples, const Lattice& texels,
                                                const Run& run) const = 0;
+
+  /// Gives a grid that resample() made of these samples what LightReader wants beyond its values, once they are what
+  /// they will be. By default nothing.
+  virtual void add_detail(const Volume& /*volume*/, const SampleSet& /*samples*/, ResampledGrid& /*texels*/,
+                          const Run& /*run*/) const {}
 };
 
 /// brute_force, cell_grid, cgal_kdtree (all Shepard), direct, ...

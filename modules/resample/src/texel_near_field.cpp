@@ -1,0 +1,223 @@
+#include "texel_near_field.h"
+
+#include <isolux/core/parallel.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
+#include <optional>
+#include <vector>
+
+#include "near_field.h"
+
+namespace isolux {
+namespace {
+
+/// Half a step is one of a fit's but not one of these: at cell centres it says other things than elsewhere
+/// (docs/resampling.md).
+constexpr std::array<double, 3> kSteps = {1.0, 2.0, 4.0};
+/// Of the squared differences between texels, the part that terms must explain to be kept: it makes no visible
+/// difference below.
+constexpr double kLeastPart = 0.002;
+/// Likewise, of what as many meaningless terms explain on average.
+constexpr double kLeastOfChance = 10.0;
+/// Of the moments' diagonal, added to it: openness at several steps may be all alike.
+constexpr double kRidge = 1e-6;
+
+/// What the volume says of a texel.
+struct TexelPlace {
+  Vec3 index;
+  NearField::Ahead ahead;
+  double isovalue = 0.0;
+};
+
+class TexelPlaces {
+ public:
+  TexelPlaces(const NearField& near_field, const Lattice& texels)
+      : near_field_(near_field), to_volume_(index_to_index(texels, near_field.field().lattice())) {}
+
+  [[nodiscard]] TexelPlace at(int i, int j, int k) const {
+    TexelPlace place;
+    place.index = Vec3(Vec3f(to_volume_.world(Vec3(i, j, k))));  // rounded as sites are
+    place.isovalue = near_field_.field().value(place.index);
+    place.ahead = near_field_.ahead(place.index);
+    return place;
+  }
+
+ private:
+  const NearField& near_field_;
+  IndexToWorld to_volume_;
+};
+
+/// Calls visit(texel, i, j, k) for all texels, layers in parallel.
+template <class Visit>
+void for_each_texel(const Lattice& texels, const Run& run, const Visit& visit) {
+  const Index3& size = texels.size;
+  parallel_blocks(std::size_t(size.z) * std::size_t(size.y), 8, run, "", [&](const Block& block) {
+    for (std::size_t row = block.begin; row < block.end; ++row) {
+      const int j = int(row % std::size_t(size.y));
+      const int k = int(row / std::size_t(size.y));
+      for (int i = 0; i < size.x; ++i) visit(texels.offset(i, j, k), i, j, k);
+    }
+  });
+}
+
+/// A texel's openness at each step and its weight: level sets count by their area (the coarea formula), but less so
+/// than that, since a single value of a steep place says little of the others; 0 if unlit.
+struct Measured {
+  Vec3f openness{0.0f};
+  float weight = 0.0f;
+};
+
+std::vector<Measured> measure(const NearField& near_field, double outwards, const ResampledGrid& texels,
+                              const Run& run) {
+  const Lattice& lattice = texels.grid.lattice;
+  const TexelPlaces places(near_field, lattice);
+  std::vector<Measured> measured(lattice.count());
+  for_each_texel(lattice, run, [&](std::size_t t, int i, int j, int k) {
+    if (texels.lit[t] == 0) return;
+    const TexelPlace place = places.at(i, j, k);
+    for (int s = 0; s < 3; ++s) {
+      measured[t].openness[s] = near_field.openness(place.index, place.ahead, place.isovalue, outwards * kSteps[s]);
+    }
+    measured[t].weight = float(std::sqrt(place.ahead.fall));
+  });
+  return measured;
+}
+
+/// Sums over texels, and over pairs of opposite neighbours of what a texel has more than these have on average.
+struct Moments {
+  Mat3 openness{0.0};                ///< squares and products
+  std::array<Vec3, 3> by_channel{};  ///< of openness with light
+  Vec3 light{0.0};                   ///< squares, by channel
+  double rows = 0.0;
+  Vec3 mean{0.0};  ///< openness of all texels
+  double texels = 0.0;
+
+  void operator+=(const Moments& more) {
+    openness += more.openness;
+    for (std::size_t c = 0; c < 3; ++c) by_channel[c] += more.by_channel[c];
+    light += more.light;
+    rows += more.rows;
+    mean += more.mean;
+    texels += more.texels;
+  }
+};
+
+void add_pair(const std::vector<float>& values, int channels, const std::vector<Measured>& measured, std::size_t texel,
+              std::size_t stride, Moments& sum) {
+  const Measured& here = measured[texel];
+  const Measured& before = measured[texel - stride];
+  const Measured& after = measured[texel + stride];
+  if (!(before.weight > 0.0f && after.weight > 0.0f)) return;
+  const Vec3 more = Vec3(here.openness) - 0.5 * (Vec3(before.openness) + Vec3(after.openness));
+  const auto weight = double(here.weight);
+  sum.openness += weight * glm::outerProduct(more, more);
+  const auto n = std::size_t(channels);
+  for (int c = 0; c < channels; ++c) {
+    const auto e = [&](std::size_t t) { return double(values[t * n + std::size_t(c)]); };
+    const double lighter = e(texel) - 0.5 * (e(texel - stride) + e(texel + stride));
+    sum.by_channel[std::size_t(c)] += weight * lighter * more;
+    sum.light[c] += weight * lighter * lighter;
+  }
+  sum.rows += 1.0;
+}
+
+Moments moments(const IlluminationGrid& grid, const std::vector<Measured>& measured, const Run& run) {
+  const Index3& size = grid.lattice.size;
+  std::vector<Moments> layers(std::size_t(size.z));
+  parallel_blocks(layers.size(), 1, run, "", [&](const Block& block) {
+    const int k = int(block.index);
+    Moments& sum = layers[block.index];
+    for (int j = 0; j < size.y; ++j) {
+      for (int i = 0; i < size.x; ++i) {
+        const std::size_t t = grid.lattice.offset(i, j, k);
+        if (!(measured[t].weight > 0.0f)) continue;
+        sum.mean += Vec3(measured[t].openness);
+        sum.texels += 1.0;
+        const Index3 at(i, j, k);
+        std::size_t stride = 1;
+        for (int a = 0; a < 3; ++a) {
+          if (at[a] > 0 && at[a] + 1 < size[a]) add_pair(grid.values, grid.channels, measured, t, stride, sum);
+          stride *= std::size_t(size[a]);
+        }
+      }
+    }
+  });
+  Moments all;
+  for (const Moments& layer : layers) all += layer;
+  return all;
+}
+
+/// The weights of one channel's terms; none if they explain too little.
+std::optional<Vec3> weights(const Moments& sum, int channel) {
+  Vec3 scale(0.0);
+  for (int s = 0; s < 3; ++s) scale[s] = sum.openness[s][s] > 0.0 ? 1.0 / std::sqrt(sum.openness[s][s]) : 0.0;
+  Mat3 scaled(kRidge);
+  for (int s = 0; s < 3; ++s)
+    for (int t = 0; t < 3; ++t) scaled[s][t] += scale[s] * sum.openness[s][t] * scale[t];
+  const Vec3& products = sum.by_channel[std::size_t(channel)];
+  const Vec3 weight = scale * (glm::inverse(scaled) * (scale * products));
+  const double explained = 2.0 * glm::dot(weight, products) - glm::dot(weight, sum.openness * weight);
+  const double least = std::max(kLeastPart, kLeastOfChance * double(kSteps.size()) / std::max(sum.rows, 1.0));
+  if (!(explained > least * sum.light[channel])) return {};
+  return weight;
+}
+
+}  // namespace
+
+void estimate_near_field(const Volume& volume, double outwards, ResampledGrid& texels, const Run& run) {
+  const NearField near_field(volume);
+  IlluminationGrid& grid = texels.grid;
+  const Moments sum = moments(grid, measure(near_field, outwards, texels, run), run);
+  std::vector<NearFieldTerm> terms;
+  for (int s = 0; s < 3; ++s) {
+    terms.push_back({.step = float(outwards * kSteps[std::size_t(s)]),
+                     .mean = float(sum.mean[s] / std::max(sum.texels, 1.0)),
+                     .weight = Vec3f(0.0f)});
+  }
+  bool any = false;
+  for (int c = 0; c < grid.channels; ++c) {
+    const std::optional<Vec3> weight = weights(sum, c);
+    if (!weight) continue;
+    any = true;
+    for (int s = 0; s < 3; ++s) {
+      Vec3f& of_term = terms[std::size_t(s)].weight;
+      if (grid.channels == 1) of_term = Vec3f(float((*weight)[s]));
+      of_term[c] = float((*weight)[s]);
+    }
+  }
+  if (!any) return;
+  grid.detail.near_field = std::move(terms);
+  grid.detail.texel_light = TexelLight::kOwn;
+  // Texels without light are 0 as yet, those around them will give them theirs.
+  grid.detail.ceiling = *std::max_element(grid.values.begin(), grid.values.end());
+}
+
+void take_off_near_field(const Volume& volume, IlluminationGrid& light, const Run& run) {
+  const NearField near_field(volume);
+  const TexelPlaces places(near_field, light.lattice);
+  const std::optional<ValueRange>& lit = light.detail.isovalues;
+  const auto channels = std::size_t(light.channels);
+  for_each_texel(light.lattice, run, [&](std::size_t t, int i, int j, int k) {
+    const TexelPlace place = places.at(i, j, k);
+    const auto isovalue = float(place.isovalue);
+    if ((lit && !(isovalue >= lit->low && isovalue <= lit->high)) || near_field.field().is_flat_around(place.index))
+      return;
+    Vec3 sum(0.0);
+    for (const NearFieldTerm& term : light.detail.near_field) {
+      const float openness = near_field.openness(place.index, place.ahead, place.isovalue, double(term.step));
+      sum += Vec3(term.weight) * double(openness - term.mean);
+    }
+    for (std::size_t c = 0; c < channels; ++c) {
+      float& value = light.values[t * channels + c];
+      value = float(double(value) - sum[int(c)]);
+    }
+  });
+  light.detail.texel_light = TexelLight::kReduced;
+}
+
+}  // namespace isolux
