@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <utility>
 #include <variant>
@@ -21,6 +22,9 @@ namespace isolux {
 namespace {
 
 constexpr double kLeastSeconds = 1e-3;  ///< where a time is over before any ray
+/// Of links of scattered sites, which may have eight times the rays of sites at texels: beyond, paths take no memory.
+constexpr std::uint64_t kMostLinkBytes = std::uint64_t(4) << 30;
+constexpr std::uint64_t kBytesALink = 4;
 
 BakeResult bake_paths(const Volume& volume, const Scene& scene, const BakeSettings& settings, FoundSites found,
                       const Stages& stages, const Run& run) {
@@ -35,6 +39,14 @@ BakeResult bake_paths(const Volume& volume, const Scene& scene, const BakeSettin
   result.least_rays = result.most_rays = std::uint32_t(settings.trace.rays);
   finish_bake(volume, traced.samples, *resampler, texels, settings, run, result);
   return result;
+}
+
+/// Reflections that are followed by paths because the rays of all scattered sites would not fit into memory; else 0.
+std::uint64_t rays_too_many(const BakeSettings& settings, std::size_t sites) {
+  if (settings.bounce_method != BounceMethod::kIterated || settings.resampler.name != "fit" || has_target(settings))
+    return 0;
+  const std::uint64_t rays = std::uint64_t(sites) * std::uint64_t(std::max(settings.trace.rays, 1));
+  return rays > kMostLinkBytes / kBytesALink ? rays : 0;
 }
 
 /// Without bounces kept rays see what the wide tracer sees, unless that one aims at light sources or at the bright
@@ -73,6 +85,10 @@ BakeResult bake_side(const Volume& volume, const Scene& scene, const BakeSetting
   if (settings.texel_sites == TexelSites::kNeeded) {
     const auto by_need = settings.sampler.name == "texels" ? bake_by_need : bake_scattered_by_need;
     return by_need(volume, scene, settings, stages, run);
+  }
+  if (const std::uint64_t rays = rays_too_many(settings, found.sites.size()); rays > 0) {
+    found.begun.skipped["links_beyond_memory"] = rays;
+    return bake_paths(volume, scene, settings, std::move(found), stages, run);
   }
   if (keeps_rays(settings, scene))
     return KeptRays(volume, scene, settings, std::move(found), stages, run).light(scene, run);
@@ -117,8 +133,10 @@ Lattice texel_lattice(const Lattice& volume, const BakeSettings& settings) {
 BakeSettings with_defaults(BakeSettings settings, const Stages& stages) {
   choose_resampling(settings);
   if (settings.bounce_method == BounceMethod::kDefault) {
-    const bool iterated =
-        settings.tracer.name.empty() && settings.resampler.name == "direct" && settings.trace.bounces != 0;
+    // Sites drawn by need are traced in two halves, the second where the first one's light changes: by paths.
+    const bool keeps = settings.resampler.name == "direct" ||
+                       (settings.resampler.name == "fit" && settings.texel_sites == TexelSites::kAll);
+    const bool iterated = settings.tracer.name.empty() && keeps && settings.trace.bounces != 0;
     settings.bounce_method = iterated ? BounceMethod::kIterated : BounceMethod::kPaths;
   }
   if (settings.tracer.name.empty()) settings.tracer.name = stages.tracers.info({}).name;

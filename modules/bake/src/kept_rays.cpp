@@ -41,12 +41,17 @@ KeptRays::KeptRays(const Volume& volume, const Scene& scene, const BakeSettings&
                              .texels = texels_};
   links_ = std::make_unique<LightLinks>(volume, std::move(found.sites), request, run);
   trace_seconds_ = watch.seconds();
+  // A whole fit a sweep would cost more than the rays; the fit is made once, of the light found.
+  if (settings_.resampler.name == "fit" && settings_.trace.bounces != 0)
+    means_.emplace(volume_, links_->sites(), texels_, run);
 }
 
 Solution KeptRays::solve(const Scene& scene, const Run& run, BakeResult& result) {
   const Stopwatch watch;
   const auto to_grid = [&](const SampleSet& samples) {
-    return fill_unlit(resampler_->resample(volume_, samples, texels_, run), run);
+    return fill_unlit(means_ ? means_->of(samples.radiance, samples.channels, run)
+                             : resampler_->resample(volume_, samples, texels_, run),
+                      run);
   };
   Solution solution = links_->solve(scene, {.bounces = settings_.trace.bounces, .gradient = settings_.trace.gradient},
                                     to_grid, run, last_);

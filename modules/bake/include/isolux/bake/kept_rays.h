@@ -3,9 +3,11 @@
 #include <isolux/bake/find_sites.h>
 #include <isolux/core/stopwatch.h>
 #include <isolux/raytrace_flat/light_links.h>
+#include <isolux/resample/texel_means.h>
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <vector>
 
 namespace isolux {
@@ -43,6 +45,7 @@ class KeptRays {
   std::unique_ptr<const Resampler> resampler_;
   BakeResult begun_;  ///< what the construction found
   std::unique_ptr<LightLinks> links_;
+  std::optional<TexelMeans> means_;  ///< what scattered sites' light is read from between reflections
   double trace_seconds_ = 0.0;
   std::vector<float> last_;  ///< e of the last solution
 };
