@@ -10,8 +10,7 @@
 #include <optional>
 #include <utility>
 
-#include "anderson.h"
-#include "link_rounds.h"
+#include "link_solver.h"
 #include "ray_values.h"
 #include "wide/aimer.h"
 #include "wide/net_mean.h"
@@ -19,80 +18,10 @@
 namespace isolux {
 namespace {
 
-constexpr std::size_t kSitesABlock = 8192;
+/// Sites of a block lie far apart in memory: how many early they are asked for.
+constexpr std::size_t kAhead = 8;
 
 }  // namespace
-
-struct LightLinks::Rounds {
-  std::shared_ptr<const LinkTargets> targets;
-  std::vector<LinkRound> all;
-};
-
-/// All bounces or some of them, from the light without reflections.
-class LightLinks::Solver {
- public:
-  Solver(const LightLinks& links, const Scene& scene, const SampleSet& straight, const ToGrid& to_grid, const Run& run)
-      : links_(links), scene_(scene), straight_(straight), to_grid_(to_grid), run_(run), seen_(straight) {}
-
-  /// The light that the last reflection reads, at the targets.
-  [[nodiscard]] std::vector<float> before_last(const SolveSettings& settings, std::span<const float> start,
-                                               Solution& solution) {
-    std::vector<float> e = straight_.radiance;
-    if (settings.bounces != kAllBounces) {
-      for (int b = 1; b < settings.bounces; ++b) reflect(e).swap(e);
-      solution.sweeps = settings.bounces;
-      return at_targets(std::move(e));
-    }
-    if (start.size() == e.size()) std::copy(start.begin(), start.end(), e.begin());
-    Anderson anderson(run_);
-    while (solution.sweeps < settings.most_sweeps) {
-      ++solution.sweeps;
-      solution.change = anderson.step(e, reflect(e));
-      if (run_.progress) run_.progress("bounces", double(solution.sweeps) / double(settings.most_sweeps));
-      if (solution.change <= settings.tolerance) break;
-    }
-    return at_targets(std::move(e));
-  }
-
- private:
-  /// The light without reflections and what one reflection of `e` adds.
-  [[nodiscard]] std::vector<float> reflect(const std::vector<float>& e) {
-    const std::vector<float> grid = reads_sites() ? std::vector<float>{} : at_targets(e);
-    const std::vector<float>& light = reads_sites() ? e : grid;
-    const auto channels = std::size_t(straight_.channels);
-    std::vector<float> next(e.size(), 0.0f);
-    for (const LinkRound& round : links_.rounds_->all) add_targets(round, straight_.channels, light, next, run_);
-    parallel_blocks(straight_.size(), kSitesABlock, run_, "", [&](const Block& block) {
-      for (std::size_t site = block.begin; site < block.end; ++site) {
-        const Vec3f albedo = scene_.albedo.at(straight_.sites.isovalues[site]) / float(links_.rays_[site]);
-        for (std::size_t c = 0; c < channels; ++c) {
-          float& value = next[site * channels + c];
-          value = straight_.radiance[site * channels + c] + albedo[int(c)] * value;
-        }
-      }
-    });
-    return next;
-  }
-
-  [[nodiscard]] bool reads_sites() const { return links_.rounds_->targets->are_sites(); }
-
-  [[nodiscard]] std::vector<float> at_targets(std::vector<float> e) {
-    if (reads_sites()) return e;
-    if (!to_grid_) throw InvalidInput("the sites do not sit at the texels: bounces want a way from samples to a grid");
-    seen_.radiance = std::move(e);
-    IlluminationGrid grid = to_grid_(seen_);
-    if (grid.lattice.size != links_.rounds_->targets->texels().size || grid.channels != straight_.channels)
-      throw InvalidInput("the grid of reflected light is not of the links' texels and the scene's channels");
-    return std::move(grid.values);
-  }
-
-  const LightLinks& links_;
-  const Scene& scene_;
-  const SampleSet& straight_;
-  const ToGrid& to_grid_;
-  const Run& run_;
-  SampleSet seen_;  ///< what to_grid_ is shown
-};
 
 LightLinks::LightLinks(const Volume& volume, Sites sites, const LinkSettings& settings, const Run& run)
     : LightLinks(volume, std::move(sites), settings, run, WithoutProbes{}) {
@@ -198,10 +127,10 @@ SampleSet LightLinks::lamp_light(const Scene& scene, const SolveSettings& settin
   return samples;
 }
 
-void LightLinks::add_up(const Scene& scene, const SampleSet& lamps, std::span<const float> e, SampleSet& samples,
+void LightLinks::add_up(const Scene& scene, const SampleSet& lamps, const TargetLight& e, SampleSet& samples,
                         const Run& run) const {
   const auto channels = std::size_t(lamps.channels);
-  const RayValues brought(scene, e, lamps.channels);
+  const RayValues brought(scene, e);
   samples.sites = sites_;
   samples.channels = lamps.channels;
   samples.radiance.assign(lamps.radiance.size(), 0.0f);
@@ -256,11 +185,12 @@ SampleSet LightLinks::reflecting(const Scene& scene, std::span<const float> texe
                                  const Run& run) const {
   if (settings_.ends != LinkEnds::kAtTexels) throw InvalidInput("light is given at texels: the links must end there");
   Solution last;
-  reflect_last(scene, lamp_light(scene, settings, last.counters, run), texels, settings, last, run);
+  reflect_last(scene, lamp_light(scene, settings, last.counters, run),
+               {.values = texels, .channels = is_grey(scene) ? 1u : 3u}, settings, last, run);
   return std::move(last.samples);
 }
 
-void LightLinks::reflect_last(const Scene& scene, const SampleSet& lamps, std::span<const float> light,
+void LightLinks::reflect_last(const Scene& scene, const SampleSet& lamps, const TargetLight& light,
                               const SolveSettings& settings, Solution& solution, const Run& run) const {
   add_up(scene, lamps, light, solution.samples, run);
   if (again_ == nullptr) return;
@@ -286,8 +216,8 @@ Solution LightLinks::solve(const Scene& scene, const SolveSettings& settings, co
   }
   SampleSet straight;
   add_up(scene, lamps, {}, straight, run);
-  const std::vector<float> light = Solver(*this, scene, straight, to_grid, run).before_last(settings, start, solution);
-  reflect_last(scene, lamps, light, settings, solution, run);
+  Solver solver(*this, scene, straight, to_grid, run);
+  reflect_last(scene, lamps, solver.before_last(settings, start, solution), settings, solution, run);
   return solution;
 }
 

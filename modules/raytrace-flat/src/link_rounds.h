@@ -80,8 +80,8 @@ struct RoundRequest {
                                     const LinkTargets* targets, const RoundRequest& request, const Run& run,
                                     TraceCounters& counters);
 
-/// sums[site] += the sum of `light` over the site's targets, `channels` values each.
-void add_targets(const LinkRound& round, int channels, std::span<const float> light, std::span<float> sums,
+/// sums[site] += the sum of `light` over the site's targets, `stride` values each: 1, 2, 3 or 6.
+void add_targets(const LinkRound& round, std::size_t stride, std::span<const float> light, std::span<float> sums,
                  const Run& run);
 
 }  // namespace isolux

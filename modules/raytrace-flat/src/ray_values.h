@@ -12,6 +12,7 @@
 
 #include "environment.h"
 #include "link_rounds.h"
+#include "target_light.h"
 #include "wide/hemisphere.h"
 #include "wide/net_mean.h"
 
@@ -20,10 +21,9 @@ namespace isolux {
 /// What the rays of one site bring, ray by ray.
 class RayValues {
  public:
-  RayValues(const Scene& scene, std::span<const float> e, int channels)
+  RayValues(const Scene& scene, const TargetLight& e)
       : scene_(scene),
         e_(e),
-        channels_(std::size_t(channels)),
         environment_(scene.environment),
         uniform_(std::get_if<UniformEnvironment>(&scene.environment)) {}
 
@@ -50,7 +50,7 @@ class RayValues {
     const std::uint32_t* target = block.targets.data() + block.begins[place];
     for (std::size_t at = 0; at < round.rays; ++at) {
       if (round.hit(block, place, at)) {
-        values[at] = e_.empty() ? emission : emission + albedo * light_at(*target++);
+        values[at] = e_.empty() ? emission : emission + albedo * light_at(*target++, isovalue);
       } else if (uniform_ != nullptr) {
         values[at] = Vec3(uniform_->radiance);
       } else {
@@ -61,14 +61,13 @@ class RayValues {
   }
 
  private:
-  [[nodiscard]] Vec3 light_at(std::uint32_t target) const {
-    const float* e = &e_[target * channels_];
-    return channels_ == 1 ? Vec3(double(e[0])) : Vec3(e[0], e[1], e[2]);
+  [[nodiscard]] Vec3 light_at(std::uint32_t target, float isovalue) const {
+    if (e_.channels == 1) return Vec3(double(e_.at(target, 0, isovalue)));
+    return {e_.at(target, 0, isovalue), e_.at(target, 1, isovalue), e_.at(target, 2, isovalue)};
   }
 
   const Scene& scene_;
-  std::span<const float> e_;
-  std::size_t channels_;
+  TargetLight e_;
   PreparedEnvironment environment_;
   const UniformEnvironment* uniform_;
 };

@@ -17,6 +17,8 @@
 
 namespace isolux {
 
+struct TargetLight;
+
 /// What is kept of each ray.
 enum class LinkEnds : std::uint8_t {
   kKept,      ///< where it ends: any number of bounces
@@ -55,7 +57,8 @@ struct Solution {
 class LightLinks {
  public:
   /// What a sweep reads from if the sites do not sit at the texels, or their links' ends are kAtTexels: e of the
-  /// samples on LinkSettings::texels, every texel filled. It must not depend on threads. Otherwise sites at texels are
+  /// samples on LinkSettings::texels, every texel filled; slopes of its detail are read too, along each ray's own level
+  /// set. It must not depend on threads. Otherwise sites at texels are
   /// read as they are and an unlit texel as the nearest lit one; this is not called then and may be empty.
   using ToGrid = std::function<IlluminationGrid(const SampleSet& samples)>;
 
@@ -105,11 +108,11 @@ class LightLinks {
   [[nodiscard]] SampleSet lamp_light(const Scene& scene, const SolveSettings& settings, TraceCounters& counters,
                                      const Run& run) const;
   /// The last reflection, of the light given, with what it takes to know its noise.
-  void reflect_last(const Scene& scene, const SampleSet& lamps, std::span<const float> light,
-                    const SolveSettings& settings, Solution& solution, const Run& run) const;
+  void reflect_last(const Scene& scene, const SampleSet& lamps, const TargetLight& light, const SolveSettings& settings,
+                    Solution& solution, const Run& run) const;
   /// e of the sites: light that comes straight from lamps, and what the rays bring; reflected light
   /// from `e` at the targets (none if empty).
-  void add_up(const Scene& scene, const SampleSet& lamps, std::span<const float> e, SampleSet& samples,
+  void add_up(const Scene& scene, const SampleSet& lamps, const TargetLight& e, SampleSet& samples,
               const Run& run) const;
 
   const Volume& volume_;
