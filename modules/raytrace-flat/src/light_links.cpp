@@ -1,4 +1,5 @@
 #include <fmt/format.h>
+#include <hwy/cache_control.h>
 #include <isolux/core/error.h>
 #include <isolux/core/parallel.h>
 #include <isolux/raytrace_flat/light_links.h>
@@ -20,6 +21,14 @@ namespace {
 
 /// Sites of a block lie far apart in memory: how many early they are asked for.
 constexpr std::size_t kAhead = 8;
+
+void prefetch(const Sites& sites, const SampleSet& samples, std::size_t site) {
+  hwy::Prefetch(&sites.positions[site]);
+  hwy::Prefetch(&sites.isovalues[site]);
+  hwy::Prefetch(&sites.normals[site]);
+  hwy::Prefetch(&samples.radiance[site * std::size_t(samples.channels)]);
+  hwy::Prefetch(&samples.variance[site]);
+}
 
 }  // namespace
 
@@ -138,20 +147,20 @@ void LightLinks::add_up(const Scene& scene, const SampleSet& lamps, const Target
   for (const LinkRound& round : rounds_->all) {
     const wide::Aimer aimer(volume_.lattice().frame, seed_, round.rays, round.first);
     parallel_blocks(round.blocks.size(), kBlocksATask, run, "", [&](const Block& task) {
-      std::vector<Vec3> values(round.rays);
+      RayValues::Scratch scratch(round.rays);
       wide::Batch batch;
       batch.clear(round.rays);
       for (std::size_t b = task.begin; b < task.end; ++b) {
         const LinkBlock& block = round.blocks[b];
         for (std::size_t place = 0; place < block.sites.size(); ++place) {
+          if (place + kAhead < block.sites.size()) prefetch(sites_, samples, block.sites[place + kAhead]);
           const std::size_t site = block.sites[place];
-          auto known = brought.moments(round, block, place, sites_.isovalues[site]);
+          auto known = brought.known_moments(round, block, place, sites_.isovalues[site]);
           if (!known) {
             // The directions are a function of seed and site: they are made again, not kept.
             batch.rays.count = 0;
             if (brought.wants_directions()) aimer.append(sites_, site, batch.rays, batch.world);
-            brought.fill(round, block, place, sites_.isovalues[site], batch.world, values);
-            known = wide::NetMean::in_order(values);
+            known = brought.moments(round, block, place, sites_.isovalues[site], batch.world, scratch);
           }
           const wide::NetMean::Moments& moments = *known;
           for (std::size_t c = 0; c < channels; ++c) {
@@ -211,11 +220,11 @@ Solution LightLinks::solve(const Scene& scene, const SolveSettings& settings, co
   Solution solution;
   const SampleSet lamps = lamp_light(scene, settings, solution.counters, run);
   if (settings.bounces == 0) {
-    reflect_last(scene, lamps, {}, settings, solution, run);
+    reflect_last(scene, lamps, {.channels = std::size_t(lamps.channels)}, settings, solution, run);
     return solution;
   }
   SampleSet straight;
-  add_up(scene, lamps, {}, straight, run);
+  add_up(scene, lamps, {.channels = std::size_t(lamps.channels)}, straight, run);
   Solver solver(*this, scene, straight, to_grid, run);
   reflect_last(scene, lamps, solver.before_last(settings, start, solution), settings, solution, run);
   return solution;
