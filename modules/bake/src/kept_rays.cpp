@@ -8,6 +8,7 @@
 
 #include "bake_parts.h"
 #include "ray_budget.h"
+#include "resampling_choice.h"
 #include "standard_error.h"
 
 namespace isolux {
@@ -17,6 +18,8 @@ namespace {
 constexpr int kFirstRays = 16;
 /// Rounds of doubling: more than the 2^20 rays that a site may have need.
 constexpr int kMostRounds = 24;
+/// Sites a texel that reflections are iterated over; the others gather the light found.
+constexpr double kSitesEnough = 2.0;
 
 }  // namespace
 
@@ -41,20 +44,27 @@ KeptRays::KeptRays(const Volume& volume, const Scene& scene, const BakeSettings&
                              .texels = texels_};
   links_ = std::make_unique<LightLinks>(volume, std::move(found.sites), request, run);
   trace_seconds_ = watch.seconds();
+  if (settings_.resampler.name != "fit" || settings_.trace.bounces == 0) return;
   // A whole fit a sweep would cost more than the rays; the fit is made once, of the light found.
-  if (settings_.resampler.name == "fit" && settings_.trace.bounces != 0)
-    means_.emplace(volume_, links_->sites(), texels_, run);
+  means_.emplace(volume_, links_->sites(), texels_, run);
+  const double a_texel = settings_.isovalues ? sites_a_texel(volume.lattice(), texels_, settings_)
+                                             : double(links_->sites().size()) / double(texels_.count());
+  one_of_ = std::max<std::size_t>(1, std::size_t(a_texel / kSitesEnough));
+}
+
+IlluminationGrid KeptRays::between_reflections(const SampleSet& samples, const Run& run) {
+  if (!means_) return fill_unlit(resampler_->resample(volume_, samples, texels_, run), run);
+  const bool all = samples.size() == links_->sites().size();
+  if (!all && !some_means_) some_means_.emplace(volume_, samples.sites, texels_, run);
+  return fill_unlit((all ? *means_ : *some_means_).of(samples.radiance, samples.channels, run), run);
 }
 
 Solution KeptRays::solve(const Scene& scene, const Run& run, BakeResult& result) {
   const Stopwatch watch;
-  const auto to_grid = [&](const SampleSet& samples) {
-    return fill_unlit(means_ ? means_->of(samples.radiance, samples.channels, run)
-                             : resampler_->resample(volume_, samples, texels_, run),
-                      run);
-  };
-  Solution solution = links_->solve(scene, {.bounces = settings_.trace.bounces, .gradient = settings_.trace.gradient},
-                                    to_grid, run, last_);
+  const SolveSettings settings{
+      .bounces = settings_.trace.bounces, .gradient = settings_.trace.gradient, .one_of = one_of_};
+  Solution solution = links_->solve(
+      scene, settings, [&](const SampleSet& samples) { return between_reflections(samples, run); }, run, last_);
   last_ = solution.samples.radiance;
   result.seconds["bounces"] += watch.seconds();
   result.sweeps += solution.sweeps;

@@ -136,8 +136,8 @@ SampleSet LightLinks::lamp_light(const Scene& scene, const SolveSettings& settin
   return samples;
 }
 
-void LightLinks::add_up(const Scene& scene, const SampleSet& lamps, const TargetLight& e, SampleSet& samples,
-                        const Run& run) const {
+void LightLinks::add_up(const Scene& scene, const SampleSet& lamps, const TargetLight& e,
+                        std::span<const std::uint32_t> places, SampleSet& samples, const Run& run) const {
   const auto channels = std::size_t(lamps.channels);
   const RayValues brought(scene, e);
   samples.sites = sites_;
@@ -153,8 +153,10 @@ void LightLinks::add_up(const Scene& scene, const SampleSet& lamps, const Target
       for (std::size_t b = task.begin; b < task.end; ++b) {
         const LinkBlock& block = round.blocks[b];
         for (std::size_t place = 0; place < block.sites.size(); ++place) {
-          if (place + kAhead < block.sites.size()) prefetch(sites_, samples, block.sites[place + kAhead]);
+          if (places.empty() && place + kAhead < block.sites.size())
+            prefetch(sites_, samples, block.sites[place + kAhead]);
           const std::size_t site = block.sites[place];
+          if (!places.empty() && places[site] == kLeftOut) continue;
           auto known = brought.known_moments(round, block, place, sites_.isovalues[site]);
           if (!known) {
             // The directions are a function of seed and site: they are made again, not kept.
@@ -201,11 +203,11 @@ SampleSet LightLinks::reflecting(const Scene& scene, std::span<const float> texe
 
 void LightLinks::reflect_last(const Scene& scene, const SampleSet& lamps, const TargetLight& light,
                               const SolveSettings& settings, Solution& solution, const Run& run) const {
-  add_up(scene, lamps, light, solution.samples, run);
+  add_up(scene, lamps, light, {}, solution.samples, run);
   if (again_ == nullptr) return;
   // The probes see the same light with other rays.
   SampleSet again;
-  again_->add_up(scene, again_->lamp_light(scene, settings, solution.counters, run), light, again, run);
+  again_->add_up(scene, again_->lamp_light(scene, settings, solution.counters, run), light, {}, again, run);
   wide::calibrate_variance(solution.samples, probes_, again, rays_);
 }
 
@@ -223,9 +225,12 @@ Solution LightLinks::solve(const Scene& scene, const SolveSettings& settings, co
     reflect_last(scene, lamps, {.channels = std::size_t(lamps.channels)}, settings, solution, run);
     return solution;
   }
+  const bool some = settings.bounces == kAllBounces && settings.one_of > 1 && !rounds_->targets->are_sites();
+  std::vector<std::uint32_t> places;
+  if (some) places = Solver::places_of_some(sites_.size(), settings.one_of);
   SampleSet straight;
-  add_up(scene, lamps, {.channels = std::size_t(lamps.channels)}, straight, run);
-  Solver solver(*this, scene, straight, to_grid, run);
+  add_up(scene, lamps, {.channels = std::size_t(lamps.channels)}, places, straight, run);
+  Solver solver(*this, scene, straight, std::move(places), to_grid, run);
   reflect_last(scene, lamps, solver.before_last(settings, start, solution), settings, solution, run);
   return solution;
 }

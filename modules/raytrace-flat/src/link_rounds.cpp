@@ -34,12 +34,19 @@ void add_site(std::span<const std::uint32_t> targets, const float* light, float*
 }
 
 template <int stride>
-void add_block(const LinkBlock& block, std::span<const float> light, std::span<float> sums) {
+void add_block(const LinkBlock& block, std::span<const float> light, std::span<const std::uint32_t> places,
+               std::span<float> sums) {
   for (std::size_t s = 0; s < block.sites.size(); ++s) {
-    if (s + kAhead < block.sites.size()) hwy::Prefetch(&sums[std::size_t(block.sites[s + kAhead]) * stride]);
+    std::size_t place = block.sites[s];
+    if (places.empty()) {
+      if (s + kAhead < block.sites.size()) hwy::Prefetch(&sums[std::size_t(block.sites[s + kAhead]) * stride]);
+    } else {
+      if (s + kAhead < block.sites.size()) hwy::Prefetch(&places[block.sites[s + kAhead]]);
+      if (places[place] == kLeftOut) continue;
+      place = places[place];
+    }
     const std::size_t begin = block.begins[s];
-    add_site<stride>({block.targets.data() + begin, block.begins[s + 1] - begin}, light.data(),
-                     &sums[std::size_t(block.sites[s]) * stride]);
+    add_site<stride>({block.targets.data() + begin, block.begins[s + 1] - begin}, light.data(), &sums[place * stride]);
   }
 }
 
@@ -126,11 +133,11 @@ LinkRound trace_round(const Volume& volume, const Sites& sites, std::span<const 
   return round;
 }
 
-void add_targets(const LinkRound& round, std::size_t stride, std::span<const float> light, std::span<float> sums,
-                 const Run& run) {
+void add_targets(const LinkRound& round, std::size_t stride, std::span<const float> light,
+                 std::span<const std::uint32_t> places, std::span<float> sums, const Run& run) {
   const auto add = stride == 1 ? add_block<1> : stride == 2 ? add_block<2> : stride == 3 ? add_block<3> : add_block<6>;
   parallel_blocks(round.blocks.size(), kBlocksATask, run, "", [&](const Block& task) {
-    for (std::size_t b = task.begin; b < task.end; ++b) add(round.blocks[b], light, sums);
+    for (std::size_t b = task.begin; b < task.end; ++b) add(round.blocks[b], light, places, sums);
   });
 }
 

@@ -20,7 +20,7 @@ using PerCorner = std::array<float, 8>;
 
 /// Isovalues that lie closer together than this part of the volume's range say nothing of a slope.
 constexpr float kLeastSpread = 1e-4f;
-constexpr float kSlopePrior = 1.0f;  // samples that say that light does not change with the isovalue
+constexpr float kSlopePrior = 0.25f;  // samples that say that light does not change with the isovalue
 
 PerCorner weights(const std::array<float, 3>& in_cell) {
   PerCorner w{};

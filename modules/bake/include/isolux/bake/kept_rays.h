@@ -35,6 +35,8 @@ class KeptRays {
 
  private:
   [[nodiscard]] Solution solve(const Scene& scene, const Run& run, BakeResult& result);
+  /// The light that reflections read.
+  [[nodiscard]] IlluminationGrid between_reflections(const SampleSet& samples, const Run& run);
   /// The sites that should get more rays; none if it is enough.
   [[nodiscard]] std::vector<std::uint32_t> wanting(const Solution& solution, double solve_seconds) const;
 
@@ -45,7 +47,10 @@ class KeptRays {
   std::unique_ptr<const Resampler> resampler_;
   BakeResult begun_;  ///< what the construction found
   std::unique_ptr<LightLinks> links_;
-  std::optional<TexelMeans> means_;  ///< what scattered sites' light is read from between reflections
+  /// What scattered sites' light is read from between reflections: of all sites, and of one of one_of_.
+  std::optional<TexelMeans> means_;
+  std::optional<TexelMeans> some_means_;
+  std::size_t one_of_ = 1;
   double trace_seconds_ = 0.0;
   std::vector<float> last_;  ///< e of the last solution
 };

@@ -38,6 +38,9 @@ struct SolveSettings {
   GradientKind gradient = GradientKind::kCentralDifferences;  ///< of light sources' shadow rays
   double tolerance = 2e-3;  ///< all bounces: stop when what is left to come is less, rms over the rms of e
   int most_sweeps = 400;    ///< all bounces: stop anyhow (pockets of albedo 1 that shine)
+  /// All bounces, of sites that do not sit at the texels: iterate over one of so many sites; all of them make the last
+  /// reflection. Where many share a texel, some say as much of it.
+  std::size_t one_of = 1;
 };
 
 struct Solution {
@@ -58,7 +61,8 @@ class LightLinks {
  public:
   /// What a sweep reads from if the sites do not sit at the texels, or their links' ends are kAtTexels: e of the
   /// samples on LinkSettings::texels, every texel filled; slopes of its detail are read too, along each ray's own level
-  /// set. It must not depend on threads. Otherwise sites at texels are
+  /// set. It must not depend on threads. Samples are those of all sites or, where SolveSettings::one_of asks for
+  /// some, always the same some of them. Otherwise sites at texels are
   /// read as they are and an unlit texel as the nearest lit one; this is not called then and may be empty.
   using ToGrid = std::function<IlluminationGrid(const SampleSet& samples)>;
 
@@ -110,10 +114,10 @@ class LightLinks {
   /// The last reflection, of the light given, with what it takes to know its noise.
   void reflect_last(const Scene& scene, const SampleSet& lamps, const TargetLight& light, const SolveSettings& settings,
                     Solution& solution, const Run& run) const;
-  /// e of the sites: light that comes straight from lamps, and what the rays bring; reflected light
-  /// from `e` at the targets (none if empty).
-  void add_up(const Scene& scene, const SampleSet& lamps, const TargetLight& e, SampleSet& samples,
-              const Run& run) const;
+  /// e of the sites, those apart that have no place (kLeftOut; empty: all have one): light that comes straight from
+  /// lamps, and what the rays bring; reflected light from `e` at the targets (none if empty).
+  void add_up(const Scene& scene, const SampleSet& lamps, const TargetLight& e, std::span<const std::uint32_t> places,
+              SampleSet& samples, const Run& run) const;
 
   const Volume& volume_;
   Sites sites_;
