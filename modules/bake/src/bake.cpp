@@ -22,9 +22,6 @@ namespace isolux {
 namespace {
 
 constexpr double kLeastSeconds = 1e-3;  ///< where a time is over before any ray
-/// Of links of scattered sites, which may have eight times the rays of sites at texels: beyond, paths take no memory.
-constexpr std::uint64_t kMostLinkBytes = std::uint64_t(4) << 30;
-constexpr std::uint64_t kBytesALink = 4;
 
 BakeResult bake_paths(const Volume& volume, const Scene& scene, const BakeSettings& settings, FoundSites found,
                       const Stages& stages, const Run& run) {
@@ -41,12 +38,12 @@ BakeResult bake_paths(const Volume& volume, const Scene& scene, const BakeSettin
   return result;
 }
 
-/// Reflections that are followed by paths because the rays of all scattered sites would not fit into memory; else 0.
+/// Rays of scattered sites that would be kept at first, if they are too many; else 0.
 std::uint64_t rays_too_many(const BakeSettings& settings, std::size_t sites) {
-  if (settings.bounce_method != BounceMethod::kIterated || settings.resampler.name != "fit" || has_target(settings))
-    return 0;
-  const std::uint64_t rays = std::uint64_t(sites) * std::uint64_t(std::max(settings.trace.rays, 1));
-  return rays > kMostLinkBytes / kBytesALink ? rays : 0;
+  if (settings.bounce_method != BounceMethod::kIterated || !reads_means(settings)) return 0;
+  const int a_site = has_target(settings) ? kFirstRays : settings.trace.rays;
+  const std::uint64_t rays = std::uint64_t(sites) * std::uint64_t(std::max(a_site, 1));
+  return rays > most_kept_rays(settings) ? rays : 0;
 }
 
 /// Without bounces kept rays see what the wide tracer sees, unless that one aims at light sources or at the bright
@@ -88,7 +85,9 @@ BakeResult bake_side(const Volume& volume, const Scene& scene, const BakeSetting
   }
   if (const std::uint64_t rays = rays_too_many(settings, found.sites.size()); rays > 0) {
     found.begun.skipped["links_beyond_memory"] = rays;
-    return bake_paths(volume, scene, settings, std::move(found), stages, run);
+    BakeSettings by_paths = settings;
+    by_paths.bounce_method = BounceMethod::kPaths;
+    return bake_side(volume, scene, by_paths, std::move(found), stages, run);
   }
   if (keeps_rays(settings, scene))
     return KeptRays(volume, scene, settings, std::move(found), stages, run).light(scene, run);

@@ -14,8 +14,6 @@
 namespace isolux {
 namespace {
 
-/// Rays a site before anything is known: the smallest net that tells sites apart.
-constexpr int kFirstRays = 16;
 /// Rounds of doubling: more than the 2^20 rays that a site may have need.
 constexpr int kMostRounds = 24;
 /// Sites a texel that reflections are iterated over; the others gather the light found.
@@ -44,8 +42,7 @@ KeptRays::KeptRays(const Volume& volume, const Scene& scene, const BakeSettings&
                              .texels = texels_};
   links_ = std::make_unique<LightLinks>(volume, std::move(found.sites), request, run);
   trace_seconds_ = watch.seconds();
-  if (settings_.resampler.name != "fit" || settings_.trace.bounces == 0) return;
-  // A whole fit a sweep would cost more than the rays; the fit is made once, of the light found.
+  if (!reads_means(settings_)) return;
   means_.emplace(volume_, links_->sites(), texels_, run);
   const double a_texel = settings_.isovalues ? sites_a_texel(volume.lattice(), texels_, settings_)
                                              : double(links_->sites().size()) / double(texels_.count());
@@ -85,6 +82,11 @@ std::vector<std::uint32_t> KeptRays::wanting(const Solution& solution, double so
     budget.rays = left * double(rays()) / std::max(trace_seconds_, 1e-9);
     if (budget.rays < 0.02 * double(rays())) return {};
   }
+  if (means_) {
+    const double room = double(most_kept_rays(settings_)) - double(rays());
+    if (room < 0.02 * double(rays())) return {};
+    budget.rays = std::min(budget.rays, room);
+  }
   return sites_to_double(solution.samples.variance, links_->rays(), budget);
 }
 
@@ -109,6 +111,8 @@ BakeResult KeptRays::light(const Scene& scene, const Run& run) {
   result.least_rays = *least;
   result.most_rays = *most;
   result.link_bytes = links_->bytes();
+  const bool missed = settings_.target_rmse > 0.0 && standard_error(solution.samples.variance) > settings_.target_rmse;
+  if (means_ && missed && !(settings_.target_seconds > 0.0)) result.skipped["rounds_beyond_memory"] = 1;
   finish_bake(volume_, solution.samples, *resampler_, texels_, settings_, run, result);
   return result;
 }

@@ -44,6 +44,7 @@ struct TexelMeans::Impl {
   struct Spread {
     float weight = 0.0f;
     float isovalue = 0.0f;  ///< mean
+    float lever = 0.0f;     ///< sum of weight times isovalue less mean: what rounding of the mean leaves
     float per_slope = 0.0f;
     float own = 0.0f;  ///< isovalue of the texel, less the mean
   };
@@ -119,15 +120,20 @@ void TexelMeans::Impl::measure(const Volume& volume, const Run& run) {
   for (std::size_t t = 0; t < spreads.size(); ++t)
     if (spreads[t].weight > 0.0f) spreads[t].isovalue = float(moments[t] / double(spreads[t].weight));
   for_each_cell(run, [&](const Corners& corners, std::span<const Row> here) {
+    PerCorner lever{};
     PerCorner squares{};
     for (const Row& row : here) {
       const PerCorner w = weights(row.in_cell);
       for (unsigned q = 0; q < 8; ++q) {
         const float d = row.isovalue - spreads[corners[q]].isovalue;
+        lever[q] += w[q] * d;
         squares[q] += w[q] * d * d;
       }
     }
-    for (unsigned q = 0; q < 8; ++q) spreads[corners[q]].per_slope += squares[q];
+    for (unsigned q = 0; q < 8; ++q) {
+      spreads[corners[q]].lever += lever[q];
+      spreads[corners[q]].per_slope += squares[q];
+    }
   });
   const TrilinearField field(volume);
   const IndexToWorld to_volume = index_to_index(texels, volume.lattice());
@@ -141,7 +147,10 @@ void TexelMeans::Impl::measure(const Volume& volume, const Run& run) {
       if (!(spread.weight > 0.0f)) continue;
       const Vec3 centre = to_volume.world({double(t % nx), double(t / nx % ny), double(t / (nx * ny))});
       spread.own = float(field.value(centre)) - spread.isovalue;
-      spread.per_slope = 1.0f / (spread.per_slope * (1.0f + kSlopePrior / spread.weight) + least * least);
+      // The prior's samples lie as far apart as the others, or as far off as the texel: few samples that lie close
+      // together do not say what light is there.
+      const float prior = kSlopePrior * (spread.per_slope / spread.weight + spread.own * spread.own);
+      spread.per_slope = 1.0f / (spread.per_slope + prior + least * least);
     }
   });
 }
@@ -181,9 +190,10 @@ void TexelMeans::Impl::lines(std::span<const float> sums, ResampledGrid& result,
       if (!(spread.weight > 0.0f)) continue;
       result.lit[t] = 1;
       for (std::size_t v = t * channels; v < (t + 1) * channels; ++v) {
-        const float slope = sums[2 * v + 1] * spread.per_slope;
+        const float mean = sums[2 * v] / spread.weight;
+        const float slope = (sums[2 * v + 1] - spread.lever * mean) * spread.per_slope;
         result.grid.detail.slopes[v] = slope;
-        result.grid.values[v] = sums[2 * v] / spread.weight + slope * spread.own;
+        result.grid.values[v] = mean + slope * spread.own;
       }
     }
   });
