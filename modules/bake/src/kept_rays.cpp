@@ -43,17 +43,16 @@ KeptRays::KeptRays(const Volume& volume, const Scene& scene, const BakeSettings&
   links_ = std::make_unique<LightLinks>(volume, std::move(found.sites), request, run);
   trace_seconds_ = watch.seconds();
   if (!reads_means(settings_)) return;
-  means_.emplace(volume_, links_->sites(), texels_, run);
   const double a_texel = settings_.isovalues ? sites_a_texel(volume.lattice(), texels_, settings_)
                                              : double(links_->sites().size()) / double(texels_.count());
   one_of_ = std::max<std::size_t>(1, std::size_t(a_texel / kSitesEnough));
 }
 
 IlluminationGrid KeptRays::between_reflections(const SampleSet& samples, const Run& run) {
-  if (!means_) return fill_unlit(resampler_->resample(volume_, samples, texels_, run), run);
-  const bool all = samples.size() == links_->sites().size();
-  if (!all && !some_means_) some_means_.emplace(volume_, samples.sites, texels_, run);
-  return fill_unlit((all ? *means_ : *some_means_).of(samples.radiance, samples.channels, run), run);
+  if (!reads_means(settings_)) return fill_unlit(resampler_->resample(volume_, samples, texels_, run), run);
+  // Samples are always of the same sites: settings_ says how many bounces, hence whether of all or some.
+  if (!means_) means_.emplace(volume_, samples.sites, texels_, run);
+  return fill_unlit(means_->of(samples.radiance, samples.channels, run), run);
 }
 
 Solution KeptRays::solve(const Scene& scene, const Run& run, BakeResult& result) {
@@ -82,7 +81,7 @@ std::vector<std::uint32_t> KeptRays::wanting(const Solution& solution, double so
     budget.rays = left * double(rays()) / std::max(trace_seconds_, 1e-9);
     if (budget.rays < 0.02 * double(rays())) return {};
   }
-  if (means_) {
+  if (reads_means(settings_)) {
     const double room = double(most_kept_rays(settings_)) - double(rays());
     if (room < 0.02 * double(rays())) return {};
     budget.rays = std::min(budget.rays, room);
@@ -112,7 +111,7 @@ BakeResult KeptRays::light(const Scene& scene, const Run& run) {
   result.most_rays = *most;
   result.link_bytes = links_->bytes();
   const bool missed = settings_.target_rmse > 0.0 && standard_error(solution.samples.variance) > settings_.target_rmse;
-  if (means_ && missed && !(settings_.target_seconds > 0.0)) result.skipped["rounds_beyond_memory"] = 1;
+  if (reads_means(settings_) && missed && !(settings_.target_seconds > 0.0)) result.skipped["rounds_beyond_memory"] = 1;
   finish_bake(volume_, solution.samples, *resampler_, texels_, settings_, run, result);
   return result;
 }

@@ -231,6 +231,7 @@ Solution LightLinks::solve(const Scene& scene, const SolveSettings& settings, co
   SampleSet straight;
   add_up(scene, lamps, {.channels = std::size_t(lamps.channels)}, places, straight, run);
   Solver solver(*this, scene, straight, std::move(places), to_grid, run);
+  straight = {};  // as large as the solution will be
   reflect_last(scene, lamps, solver.before_last(settings, start, solution), settings, solution, run);
   return solution;
 }

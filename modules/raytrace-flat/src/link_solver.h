@@ -22,7 +22,7 @@ struct LightLinks::Rounds {
 class LightLinks::Solver {
  public:
   /// \pre `straight` is e without reflections of all sites, or of those that have a place (kLeftOut: none; empty: all),
-  /// and like everything else here outlives this
+  /// and may go; everything else outlives this
   Solver(const LightLinks& links, const Scene& scene, const SampleSet& straight, std::vector<std::uint32_t> places,
          const ToGrid& to_grid, const Run& run);
 

@@ -35,15 +35,21 @@ std::optional<wide::NetMean::Moments> RayValues::known_moments(const LinkRound& 
 void RayValues::see_sky(const LinkRound& round, const LinkBlock& block, std::size_t place,
                         const wide::Directions& world, Scratch& scratch) const {
   if (sky_ != nullptr) {
-    // All rays, those that hit too: it is quicker than to choose.
+    // All rays, those that hit too, without a branch: it is quicker than to choose.
+    const Vec3f up = up_;
+    const std::size_t rays = round.rays;
+    const float* const x = world.axis[0].data();
+    const float* const y = world.axis[1].data();
+    const float* const z = world.axis[2].data();
     for (std::size_t c = 0; c < e_.channels; ++c) {
       const float ground = sky_->ground[int(c)];
       const float horizon = sky_->horizon[int(c)];
       const float change = sky_->zenith[int(c)] - horizon;
-      float* sky = scratch.sky[c].data();
-      for (std::size_t k = 0; k < round.rays; ++k) {
-        const float sine = world.axis[0][k] * up_.x + world.axis[1][k] * up_.y + world.axis[2][k] * up_.z;
-        sky[k] = sine < 0.0f ? ground : horizon + sine * change;
+      float* const sky = scratch.sky[c].data();
+      for (std::size_t k = 0; k < rays; ++k) {
+        const float sine = x[k] * up.x + y[k] * up.y + z[k] * up.z;
+        const float above = horizon + sine * change;
+        sky[k] = sine < 0.0f ? ground : above;
       }
     }
     return;

@@ -47,9 +47,7 @@ class KeptRays {
   std::unique_ptr<const Resampler> resampler_;
   BakeResult begun_;  ///< what the construction found
   std::unique_ptr<LightLinks> links_;
-  /// What scattered sites' light is read from between reflections: of all sites, and of one of one_of_.
-  std::optional<TexelMeans> means_;
-  std::optional<TexelMeans> some_means_;
+  std::optional<TexelMeans> means_;  ///< what scattered sites' light is read from between reflections, once it is
   std::size_t one_of_ = 1;
   double trace_seconds_ = 0.0;
   std::vector<float> last_;  ///< e of the last solution
