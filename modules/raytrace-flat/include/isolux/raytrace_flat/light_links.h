@@ -61,9 +61,9 @@ class LightLinks {
  public:
   /// What a sweep reads from if the sites do not sit at the texels, or their links' ends are kAtTexels: e of the
   /// samples on LinkSettings::texels, every texel filled; slopes of its detail are read too, along each ray's own level
-  /// set. It must not depend on threads. Samples are those of all sites or, where SolveSettings::one_of asks for
-  /// some, always the same some of them. Otherwise sites at texels are
-  /// read as they are and an unlit texel as the nearest lit one; this is not called then and may be empty.
+  /// set. It must not depend on threads. Samples are those of all sites or, where SolveSettings::one_of asks for some,
+  /// always the same some of them. Otherwise sites at texels are read as they are and an unlit texel as the nearest lit
+  /// one; this is not called then and may be empty.
   using ToGrid = std::function<IlluminationGrid(const SampleSet& samples)>;
 
   /// Traces the links. \pre as gather(); the volume must outlive the links. \throw Cancelled, InvalidInput
