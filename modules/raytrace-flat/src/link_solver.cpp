@@ -135,7 +135,9 @@ void LightLinks::Solver::measure_texels() {
   texels_.resize(texels.count());
   parallel_blocks(texels_.size(), kSitesABlock, run_, "", [&](const Block& block) {
     for (std::size_t t = block.begin; t < block.end; ++t) {
-      const Vec3 centre = to_volume.world({double(t % nx), double(t / nx % ny), double(t / (nx * ny))});
+      const std::size_t j = t / nx % ny;
+      const std::size_t k = t / (nx * ny);
+      const Vec3 centre = to_volume.world({double(t % nx), double(j), double(k)});
       texels_[t] = float(field.value(centre) - double(middle_));
     }
   });

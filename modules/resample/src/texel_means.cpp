@@ -145,7 +145,9 @@ void TexelMeans::Impl::measure(const Volume& volume, const Run& run) {
     for (std::size_t t = block.begin; t < block.end; ++t) {
       Spread& spread = spreads[t];
       if (!(spread.weight > 0.0f)) continue;
-      const Vec3 centre = to_volume.world({double(t % nx), double(t / nx % ny), double(t / (nx * ny))});
+      const std::size_t j = t / nx % ny;
+      const std::size_t k = t / (nx * ny);
+      const Vec3 centre = to_volume.world({double(t % nx), double(j), double(k)});
       spread.own = float(field.value(centre)) - spread.isovalue;
       // The prior's samples lie as far apart as the others, or as far off as the texel: few samples that lie close
       // together do not say what light is there.
