@@ -95,6 +95,14 @@ void report_bake(const BakeResult& result, Session& session) {
   }
 }
 
+/// What was done otherwise than asked for want of memory.
+void say_of_memory(const BakeResult& result, const Session& session) {
+  if (const auto it = result.skipped.find("links_beyond_memory"); it != result.skipped.end())
+    session.say(fmt::format("reflections are followed by paths: {} rays are too many to keep", it->second));
+  if (result.skipped.contains("rounds_beyond_memory"))
+    session.say("the error asked is not reached: more rays than can be kept; --bounce-method paths needs no memory");
+}
+
 /// --texels auto
 void choose_size(const Options& options, const Volume& volume, const Scene& scene, BakeSettings& settings,
                  Session& session) {
@@ -116,8 +124,8 @@ void run_bake(const Options& options, Session& session) {
   for (const auto& [stage, seconds] : result.seconds) session.add_seconds(stage, seconds);
   const double trace_seconds = std::max(result.seconds["trace"], 1e-9);
   report_bake(result, session);
+  say_of_memory(result, session);
   session.report["rays_per_second"] = double(result.counters.rays) / trace_seconds;
-  session.report["settings"] = nlohmann::json::parse(settings_to_json(settings, session.run));
   session.say(fmt::format(
       "{} texels{} from {} sites, {:.1f} million rays in {:.1f} s ({:.2f} million a second), error about {:.4f}",
       result.light.lattice.count(), result.sides.empty() ? "" : " of both sides", result.sites,
@@ -129,6 +137,7 @@ void run_bake(const Options& options, Session& session) {
                   {.compress = options.compress});
     }
     const LightFile light = make_light_file(std::move(result), volume, scene, settings, session.run);
+    session.report["settings"] = nlohmann::json::parse(light.metadata.at("isolux.settings"));
     write_light(light, options.output, volume.space, {.compress = options.compress});
   });
 }
@@ -162,9 +171,10 @@ void add_bake_command(CLI::App& program, Session& session) {
   command.add_option("--lattice", options->lattice, "texels at the cell centres (default) or at the voxels")
       ->check(CLI::IsMember({"cells", "voxels"}));
   command
-      .add_option("--bounce-method", options->bounce_method,
-                  "iterated: trace once, keep the hits and iterate on the grid (default for "
-                  "sites at texels, unless --tracer is given); paths: unbiased")
+      .add_option(
+          "--bounce-method", options->bounce_method,
+          "iterated: trace once, keep the hits and iterate on the grid (default for "
+          "sites at texels and --resampler fit, unless --tracer or scattered --sites need is given); paths: unbiased")
       ->check(CLI::IsMember({"iterated", "paths"}));
   command
       .add_option("--rmse", options->rmse,

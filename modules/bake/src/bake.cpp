@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <utility>
 #include <variant>
@@ -35,6 +36,14 @@ BakeResult bake_paths(const Volume& volume, const Scene& scene, const BakeSettin
   result.least_rays = result.most_rays = std::uint32_t(settings.trace.rays);
   finish_bake(volume, traced.samples, *resampler, texels, settings, run, result);
   return result;
+}
+
+/// Rays of scattered sites that would be kept at first, if they are too many; else 0.
+std::uint64_t rays_too_many(const BakeSettings& settings, std::size_t sites) {
+  if (settings.bounce_method != BounceMethod::kIterated || !reads_means(settings)) return 0;
+  const int a_site = has_target(settings) ? kFirstRays : settings.trace.rays;
+  const std::uint64_t rays = std::uint64_t(sites) * std::uint64_t(std::max(a_site, 1));
+  return rays > most_kept_rays(settings) ? rays : 0;
 }
 
 /// Without bounces kept rays see what the wide tracer sees, unless that one aims at light sources or at the bright
@@ -73,6 +82,12 @@ BakeResult bake_side(const Volume& volume, const Scene& scene, const BakeSetting
   if (settings.texel_sites == TexelSites::kNeeded) {
     const auto by_need = settings.sampler.name == "texels" ? bake_by_need : bake_scattered_by_need;
     return by_need(volume, scene, settings, stages, run);
+  }
+  if (const std::uint64_t rays = rays_too_many(settings, found.sites.size()); rays > 0) {
+    found.begun.skipped["links_beyond_memory"] = rays;
+    BakeSettings by_paths = settings;
+    by_paths.bounce_method = BounceMethod::kPaths;
+    return bake_side(volume, scene, by_paths, std::move(found), stages, run);
   }
   if (keeps_rays(settings, scene))
     return KeptRays(volume, scene, settings, std::move(found), stages, run).light(scene, run);
@@ -117,8 +132,10 @@ Lattice texel_lattice(const Lattice& volume, const BakeSettings& settings) {
 BakeSettings with_defaults(BakeSettings settings, const Stages& stages) {
   choose_resampling(settings);
   if (settings.bounce_method == BounceMethod::kDefault) {
-    const bool iterated =
-        settings.tracer.name.empty() && settings.resampler.name == "direct" && settings.trace.bounces != 0;
+    // Sites drawn by need are traced in two halves, the second where the first one's light changes: by paths.
+    const bool keeps = settings.resampler.name == "direct" ||
+                       (settings.resampler.name == "fit" && settings.texel_sites == TexelSites::kAll);
+    const bool iterated = settings.tracer.name.empty() && keeps && settings.trace.bounces != 0;
     settings.bounce_method = iterated ? BounceMethod::kIterated : BounceMethod::kPaths;
   }
   if (settings.tracer.name.empty()) settings.tracer.name = stages.tracers.info({}).name;

@@ -2,12 +2,26 @@
 
 #include <isolux/bake/bake.h>
 
+#include <cstdint>
+
 namespace isolux {
+
+/// Rays a site before anything is known: the smallest net that tells sites apart.
+inline constexpr int kFirstRays = 16;
 
 /// Whether rays are to be spent until something is reached.
 [[nodiscard]] inline bool has_target(const BakeSettings& settings) {
   return settings.target_rmse > 0.0 || settings.target_seconds > 0.0;
 }
+
+/// Whether reflections are read from means of scattered sites (TexelMeans): a whole fit a sweep would cost more than
+/// the rays.
+[[nodiscard]] inline bool reads_means(const BakeSettings& settings) {
+  return settings.resampler.name == "fit" && settings.trace.bounces != 0;
+}
+
+/// Of those sites; a link takes four bytes.
+[[nodiscard]] inline std::uint64_t most_kept_rays(const BakeSettings& settings) { return settings.most_link_bytes / 4; }
 
 /// \throw InvalidInput if the volume is not usable or constant, or the isovalues asked for lie outside its values
 void require_lightable(const Volume& volume, const BakeSettings& settings);

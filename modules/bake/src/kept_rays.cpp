@@ -8,15 +8,16 @@
 
 #include "bake_parts.h"
 #include "ray_budget.h"
+#include "resampling_choice.h"
 #include "standard_error.h"
 
 namespace isolux {
 namespace {
 
-/// Rays a site before anything is known: the smallest net that tells sites apart.
-constexpr int kFirstRays = 16;
 /// Rounds of doubling: more than the 2^20 rays that a site may have need.
 constexpr int kMostRounds = 24;
+/// Sites a texel that reflections are iterated over; the others gather the light found.
+constexpr double kSitesEnough = 2.0;
 
 }  // namespace
 
@@ -42,15 +43,25 @@ KeptRays::KeptRays(const Volume& volume, const Scene& scene, const BakeSettings&
                              .nets = has_target(settings_) ? RayNets::kIndependent : RayNets::kInterleaved};
   links_ = std::make_unique<LightLinks>(volume, std::move(found.sites), request, run);
   trace_seconds_ = watch.seconds();
+  if (!reads_means(settings_)) return;
+  const double a_texel = settings_.isovalues ? sites_a_texel(volume.lattice(), texels_, settings_)
+                                             : double(links_->sites().size()) / double(texels_.count());
+  one_of_ = std::max<std::size_t>(1, std::size_t(a_texel / kSitesEnough));
+}
+
+IlluminationGrid KeptRays::between_reflections(const SampleSet& samples, const Run& run) {
+  if (!reads_means(settings_)) return fill_unlit(resampler_->resample(volume_, samples, texels_, run), run);
+  // Samples are always of the same sites: settings_ says how many bounces, hence whether of all or some.
+  if (!means_) means_.emplace(volume_, samples.sites, texels_, run);
+  return fill_unlit(means_->of(samples.radiance, samples.channels, run), run);
 }
 
 Solution KeptRays::solve(const Scene& scene, const Run& run, BakeResult& result) {
   const Stopwatch watch;
-  const auto to_grid = [&](const SampleSet& samples) {
-    return fill_unlit(resampler_->resample(volume_, samples, texels_, run), run);
-  };
-  Solution solution = links_->solve(scene, {.bounces = settings_.trace.bounces, .gradient = settings_.trace.gradient},
-                                    to_grid, run, last_);
+  const SolveSettings settings{
+      .bounces = settings_.trace.bounces, .gradient = settings_.trace.gradient, .one_of = one_of_};
+  Solution solution = links_->solve(
+      scene, settings, [&](const SampleSet& samples) { return between_reflections(samples, run); }, run, last_);
   last_ = solution.samples.radiance;
   result.seconds["bounces"] += watch.seconds();
   result.sweeps += solution.sweeps;
@@ -70,6 +81,11 @@ std::vector<std::uint32_t> KeptRays::wanting(const Solution& solution, double so
     const double left = settings_.target_seconds - since_.seconds() - 2.0 * solve_seconds;
     budget.rays = left * double(rays()) / std::max(trace_seconds_, 1e-9);
     if (budget.rays < 0.02 * double(rays())) return {};
+  }
+  if (reads_means(settings_)) {
+    const double room = double(most_kept_rays(settings_)) - double(rays());
+    if (room < 0.02 * double(rays())) return {};
+    budget.rays = std::min(budget.rays, room);
   }
   return sites_to_double(solution.samples.variance, links_->rays(), budget);
 }
@@ -95,6 +111,8 @@ BakeResult KeptRays::light(const Scene& scene, const Run& run) {
   result.least_rays = *least;
   result.most_rays = *most;
   result.link_bytes = links_->bytes();
+  const bool missed = settings_.target_rmse > 0.0 && standard_error(solution.samples.variance) > settings_.target_rmse;
+  if (reads_means(settings_) && missed && !(settings_.target_seconds > 0.0)) result.skipped["rounds_beyond_memory"] = 1;
   finish_bake(volume_, solution.samples, *resampler_, texels_, settings_, run, result);
   return result;
 }

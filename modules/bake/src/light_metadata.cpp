@@ -29,6 +29,12 @@ std::optional<Scene> scene_of(const LightFile& light) {
   return parse_scene(json.dump(), "", "isolux.scene of the light");
 }
 
+/// `settings` with how reflections were found: iterations leave sweeps.
+BakeSettings as_done(BakeSettings settings, const BakeResult& result) {
+  if (settings.trace.bounces != 0 && result.sweeps == 0) settings.bounce_method = BounceMethod::kPaths;
+  return settings;
+}
+
 }  // namespace
 
 std::string settings_to_json(const BakeSettings& settings, const Run& run) {
@@ -61,7 +67,7 @@ LightFile make_light_file(BakeResult result, const Volume& volume, const Scene& 
   light.metadata = {{"isolux.version", kVersion},
                     {"isolux.quantity", "irradiance/pi"},
                     {"isolux.scene", scene_to_json(scene)},
-                    {"isolux.settings", settings_to_json(settings, run)},
+                    {"isolux.settings", settings_to_json(as_done(settings, result), run)},
                     {"isolux.volume_sha256", volume_sha256(volume)},
                     {"isolux.iso_range", fmt::format("{}:{}", range.low, range.high)}};
   if (!std::isnan(result.rmse_estimate))
@@ -78,7 +84,7 @@ LightFile make_error_file(const BakeResult& result, const Volume& volume, const 
   file.metadata = {{"isolux.version", kVersion},
                    {"isolux.quantity", "standard error of irradiance/pi"},
                    {"isolux.scene", scene_to_json(scene)},
-                   {"isolux.settings", settings_to_json(settings, run)},
+                   {"isolux.settings", settings_to_json(as_done(settings, result), run)},
                    {"isolux.volume_sha256", volume_sha256(volume)}};
   file.grid = *result.error;
   file.inner = result.inner_error;

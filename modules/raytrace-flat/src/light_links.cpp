@@ -1,4 +1,5 @@
 #include <fmt/format.h>
+#include <hwy/cache_control.h>
 #include <isolux/core/error.h>
 #include <isolux/core/parallel.h>
 #include <isolux/raytrace_flat/light_links.h>
@@ -10,8 +11,7 @@
 #include <optional>
 #include <utility>
 
-#include "anderson.h"
-#include "link_rounds.h"
+#include "link_solver.h"
 #include "ray_values.h"
 #include "wide/aimer.h"
 #include "wide/net_mean.h"
@@ -19,80 +19,18 @@
 namespace isolux {
 namespace {
 
-constexpr std::size_t kSitesABlock = 8192;
+/// Sites of a block lie far apart in memory: how many early they are asked for.
+constexpr std::size_t kAhead = 8;
+
+void prefetch(const Sites& sites, const SampleSet& samples, std::size_t site) {
+  hwy::Prefetch(&sites.positions[site]);
+  hwy::Prefetch(&sites.isovalues[site]);
+  hwy::Prefetch(&sites.normals[site]);
+  hwy::Prefetch(&samples.radiance[site * std::size_t(samples.channels)]);
+  hwy::Prefetch(&samples.variance[site]);
+}
 
 }  // namespace
-
-struct LightLinks::Rounds {
-  std::shared_ptr<const LinkTargets> targets;
-  std::vector<LinkRound> all;
-};
-
-/// All bounces or some of them, from the light without reflections.
-class LightLinks::Solver {
- public:
-  Solver(const LightLinks& links, const Scene& scene, const SampleSet& straight, const ToGrid& to_grid, const Run& run)
-      : links_(links), scene_(scene), straight_(straight), to_grid_(to_grid), run_(run), seen_(straight) {}
-
-  /// The light that the last reflection reads, at the targets.
-  [[nodiscard]] std::vector<float> before_last(const SolveSettings& settings, std::span<const float> start,
-                                               Solution& solution) {
-    std::vector<float> e = straight_.radiance;
-    if (settings.bounces != kAllBounces) {
-      for (int b = 1; b < settings.bounces; ++b) reflect(e).swap(e);
-      solution.sweeps = settings.bounces;
-      return at_targets(std::move(e));
-    }
-    if (start.size() == e.size()) std::copy(start.begin(), start.end(), e.begin());
-    Anderson anderson(run_);
-    while (solution.sweeps < settings.most_sweeps) {
-      ++solution.sweeps;
-      solution.change = anderson.step(e, reflect(e));
-      if (run_.progress) run_.progress("bounces", double(solution.sweeps) / double(settings.most_sweeps));
-      if (solution.change <= settings.tolerance) break;
-    }
-    return at_targets(std::move(e));
-  }
-
- private:
-  /// The light without reflections and what one reflection of `e` adds.
-  [[nodiscard]] std::vector<float> reflect(const std::vector<float>& e) {
-    const std::vector<float> grid = reads_sites() ? std::vector<float>{} : at_targets(e);
-    const std::vector<float>& light = reads_sites() ? e : grid;
-    const auto channels = std::size_t(straight_.channels);
-    std::vector<float> next(e.size(), 0.0f);
-    for (const LinkRound& round : links_.rounds_->all) add_targets(round, straight_.channels, light, next, run_);
-    parallel_blocks(straight_.size(), kSitesABlock, run_, "", [&](const Block& block) {
-      for (std::size_t site = block.begin; site < block.end; ++site) {
-        const Vec3f albedo = scene_.albedo.at(straight_.sites.isovalues[site]) / float(links_.rays_[site]);
-        for (std::size_t c = 0; c < channels; ++c) {
-          float& value = next[site * channels + c];
-          value = straight_.radiance[site * channels + c] + albedo[int(c)] * value;
-        }
-      }
-    });
-    return next;
-  }
-
-  [[nodiscard]] bool reads_sites() const { return links_.rounds_->targets->are_sites(); }
-
-  [[nodiscard]] std::vector<float> at_targets(std::vector<float> e) {
-    if (reads_sites()) return e;
-    if (!to_grid_) throw InvalidInput("the sites do not sit at the texels: bounces want a way from samples to a grid");
-    seen_.radiance = std::move(e);
-    IlluminationGrid grid = to_grid_(seen_);
-    if (grid.lattice.size != links_.rounds_->targets->texels().size || grid.channels != straight_.channels)
-      throw InvalidInput("the grid of reflected light is not of the links' texels and the scene's channels");
-    return std::move(grid.values);
-  }
-
-  const LightLinks& links_;
-  const Scene& scene_;
-  const SampleSet& straight_;
-  const ToGrid& to_grid_;
-  const Run& run_;
-  SampleSet seen_;  ///< what to_grid_ is shown
-};
 
 LightLinks::LightLinks(const Volume& volume, Sites sites, const LinkSettings& settings, const Run& run)
     : LightLinks(volume, std::move(sites), settings, run, WithoutProbes{}) {
@@ -201,10 +139,10 @@ SampleSet LightLinks::lamp_light(const Scene& scene, const SolveSettings& settin
   return samples;
 }
 
-void LightLinks::add_up(const Scene& scene, const SampleSet& lamps, std::span<const float> e, SampleSet& samples,
-                        const Run& run) const {
+void LightLinks::add_up(const Scene& scene, const SampleSet& lamps, const TargetLight& e,
+                        std::span<const std::uint32_t> places, SampleSet& samples, const Run& run) const {
   const auto channels = std::size_t(lamps.channels);
-  const RayValues brought(scene, e, lamps.channels);
+  const RayValues brought(scene, e);
   samples.sites = sites_;
   samples.channels = lamps.channels;
   samples.radiance.assign(lamps.radiance.size(), 0.0f);
@@ -213,20 +151,22 @@ void LightLinks::add_up(const Scene& scene, const SampleSet& lamps, std::span<co
   for (const LinkRound& round : rounds_->all) {
     const wide::Aimer aimer(volume_.lattice().frame, seed_, round.rays, round.first, nets, sites_);
     parallel_blocks(round.blocks.size(), kBlocksATask, run, "", [&](const Block& task) {
-      std::vector<Vec3> values(round.rays);
+      RayValues::Scratch scratch(round.rays);
       wide::Batch batch;
       batch.clear(round.rays);
       for (std::size_t b = task.begin; b < task.end; ++b) {
         const LinkBlock& block = round.blocks[b];
         for (std::size_t place = 0; place < block.sites.size(); ++place) {
+          if (places.empty() && place + kAhead < block.sites.size())
+            prefetch(sites_, samples, block.sites[place + kAhead]);
           const std::size_t site = block.sites[place];
-          auto known = brought.moments(round, block, place, sites_.isovalues[site]);
+          if (!places.empty() && places[site] == kLeftOut) continue;
+          auto known = brought.known_moments(round, block, place, sites_.isovalues[site]);
           if (!known) {
             // The directions are a function of seed and site: they are made again, not kept.
             batch.rays.count = 0;
             if (brought.wants_directions()) aimer.append(sites_, site, batch.rays, batch.world);
-            brought.fill(round, block, place, sites_.isovalues[site], batch.world, values);
-            known = wide::NetMean::in_order(values);
+            known = brought.moments(round, block, place, sites_.isovalues[site], batch.world, scratch);
           }
           const wide::NetMean::Moments& moments = *known;
           for (std::size_t c = 0; c < channels; ++c) {
@@ -260,17 +200,18 @@ SampleSet LightLinks::reflecting(const Scene& scene, std::span<const float> texe
                                  const Run& run) const {
   if (settings_.ends != LinkEnds::kAtTexels) throw InvalidInput("light is given at texels: the links must end there");
   Solution last;
-  reflect_last(scene, lamp_light(scene, settings, last.counters, run), texels, settings, last, run);
+  reflect_last(scene, lamp_light(scene, settings, last.counters, run),
+               {.values = texels, .channels = is_grey(scene) ? 1u : 3u}, settings, last, run);
   return std::move(last.samples);
 }
 
-void LightLinks::reflect_last(const Scene& scene, const SampleSet& lamps, std::span<const float> light,
+void LightLinks::reflect_last(const Scene& scene, const SampleSet& lamps, const TargetLight& light,
                               const SolveSettings& settings, Solution& solution, const Run& run) const {
-  add_up(scene, lamps, light, solution.samples, run);
+  add_up(scene, lamps, light, {}, solution.samples, run);
   if (again_ == nullptr) return;
   // The probes see the same light with other rays.
   SampleSet again;
-  again_->add_up(scene, again_->lamp_light(scene, settings, solution.counters, run), light, again, run);
+  again_->add_up(scene, again_->lamp_light(scene, settings, solution.counters, run), light, {}, again, run);
   wide::calibrate_variance(solution.samples, probes_, again, rays_);
 }
 
@@ -285,13 +226,17 @@ Solution LightLinks::solve(const Scene& scene, const SolveSettings& settings, co
   Solution solution;
   const SampleSet lamps = lamp_light(scene, settings, solution.counters, run);
   if (settings.bounces == 0) {
-    reflect_last(scene, lamps, {}, settings, solution, run);
+    reflect_last(scene, lamps, {.channels = std::size_t(lamps.channels)}, settings, solution, run);
     return solution;
   }
+  const bool some = settings.bounces == kAllBounces && settings.one_of > 1 && !rounds_->targets->are_sites();
+  std::vector<std::uint32_t> places;
+  if (some) places = Solver::places_of_some(sites_.size(), settings.one_of);
   SampleSet straight;
-  add_up(scene, lamps, {}, straight, run);
-  const std::vector<float> light = Solver(*this, scene, straight, to_grid, run).before_last(settings, start, solution);
-  reflect_last(scene, lamps, light, settings, solution, run);
+  add_up(scene, lamps, {.channels = std::size_t(lamps.channels)}, places, straight, run);
+  Solver solver(*this, scene, straight, std::move(places), to_grid, run);
+  straight = {};  // as large as the solution will be
+  reflect_last(scene, lamps, solver.before_last(settings, start, solution), settings, solution, run);
   return solution;
 }
 

@@ -1,5 +1,6 @@
 #include "link_rounds.h"
 
+#include <hwy/cache_control.h>
 #include <isolux/core/parallel.h>
 #include <isolux/raytrace_flat/trace_counters.h>
 
@@ -11,30 +12,41 @@
 namespace isolux {
 namespace {
 
+/// Sites of a block lie far apart in memory: how many early they are asked for.
+constexpr std::size_t kAhead = 16;
+
 /// Adds the light of one site's targets. Two sums at once hide half of the additions' latency.
-template <int channels>
+template <int stride>
 void add_site(std::span<const std::uint32_t> targets, const float* light, float* sum) {
-  float even[channels] = {};
-  float odd[channels] = {};
+  float even[stride] = {};
+  float odd[stride] = {};
   std::size_t i = 0;
   for (; i + 1 < targets.size(); i += 2) {
-    for (int c = 0; c < channels; ++c) {
-      even[c] += light[std::size_t(targets[i]) * channels + std::size_t(c)];
-      odd[c] += light[std::size_t(targets[i + 1]) * channels + std::size_t(c)];
+    for (int c = 0; c < stride; ++c) {
+      even[c] += light[std::size_t(targets[i]) * stride + std::size_t(c)];
+      odd[c] += light[std::size_t(targets[i + 1]) * stride + std::size_t(c)];
     }
   }
-  for (int c = 0; c < channels; ++c) {
-    if (i < targets.size()) even[c] += light[std::size_t(targets[i]) * channels + std::size_t(c)];
+  for (int c = 0; c < stride; ++c) {
+    if (i < targets.size()) even[c] += light[std::size_t(targets[i]) * stride + std::size_t(c)];
     sum[c] += even[c] + odd[c];
   }
 }
 
-template <int channels>
-void add_block(const LinkBlock& block, std::span<const float> light, std::span<float> sums) {
+template <int stride>
+void add_block(const LinkBlock& block, std::span<const float> light, std::span<const std::uint32_t> places,
+               std::span<float> sums) {
   for (std::size_t s = 0; s < block.sites.size(); ++s) {
+    std::size_t place = block.sites[s];
+    if (places.empty()) {
+      if (s + kAhead < block.sites.size()) hwy::Prefetch(&sums[std::size_t(block.sites[s + kAhead]) * stride]);
+    } else {
+      if (s + kAhead < block.sites.size()) hwy::Prefetch(&places[block.sites[s + kAhead]]);
+      if (places[place] == kLeftOut) continue;
+      place = places[place];
+    }
     const std::size_t begin = block.begins[s];
-    add_site<channels>({block.targets.data() + begin, block.begins[s + 1] - begin}, light.data(),
-                       &sums[std::size_t(block.sites[s]) * channels]);
+    add_site<stride>({block.targets.data() + begin, block.begins[s + 1] - begin}, light.data(), &sums[place * stride]);
   }
 }
 
@@ -122,16 +134,11 @@ LinkRound trace_round(const Volume& volume, const Sites& sites, std::span<const 
   return round;
 }
 
-void add_targets(const LinkRound& round, int channels, std::span<const float> light, std::span<float> sums,
-                 const Run& run) {
+void add_targets(const LinkRound& round, std::size_t stride, std::span<const float> light,
+                 std::span<const std::uint32_t> places, std::span<float> sums, const Run& run) {
+  const auto add = stride == 1 ? add_block<1> : stride == 2 ? add_block<2> : stride == 3 ? add_block<3> : add_block<6>;
   parallel_blocks(round.blocks.size(), kBlocksATask, run, "", [&](const Block& task) {
-    for (std::size_t b = task.begin; b < task.end; ++b) {
-      if (channels == 1) {
-        add_block<1>(round.blocks[b], light, sums);
-      } else {
-        add_block<3>(round.blocks[b], light, sums);
-      }
-    }
+    for (std::size_t b = task.begin; b < task.end; ++b) add(round.blocks[b], light, places, sums);
   });
 }
 

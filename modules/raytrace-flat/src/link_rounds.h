@@ -81,8 +81,12 @@ struct RoundRequest {
                                     const LinkTargets* targets, const RoundRequest& request, const Run& run,
                                     TraceCounters& counters);
 
-/// sums[site] += the sum of `light` over the site's targets, `channels` values each.
-void add_targets(const LinkRound& round, int channels, std::span<const float> light, std::span<float> sums,
-                 const Run& run);
+/// The place of a site that is left out.
+inline constexpr std::uint32_t kLeftOut = ~std::uint32_t(0);
+
+/// Adds the sum of `light` over each site's targets to its sums, `stride` values each: 1, 2, 3 or 6. `places` says
+/// where a site's sums are, or kLeftOut; empty: at its number.
+void add_targets(const LinkRound& round, std::size_t stride, std::span<const float> light,
+                 std::span<const std::uint32_t> places, std::span<float> sums, const Run& run);
 
 }  // namespace isolux

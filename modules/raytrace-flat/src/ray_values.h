@@ -4,73 +4,50 @@
 #include <isolux/raytrace_flat/scene.h>
 
 #include <cstddef>
-#include <cstdint>
 #include <optional>
-#include <span>
-#include <variant>
 #include <vector>
 
 #include "environment.h"
 #include "link_rounds.h"
+#include "target_light.h"
 #include "wide/hemisphere.h"
 #include "wide/net_mean.h"
 
 namespace isolux {
 
-/// What the rays of one site bring, ray by ray.
+/// What the rays of one site bring.
 class RayValues {
  public:
-  RayValues(const Scene& scene, std::span<const float> e, int channels)
-      : scene_(scene),
-        e_(e),
-        channels_(std::size_t(channels)),
-        environment_(scene.environment),
-        uniform_(std::get_if<UniformEnvironment>(&scene.environment)) {}
+  /// Of the scene's environment and emission, and of the light that their ends reflect (none if empty).
+  RayValues(const Scene& scene, const TargetLight& e);
 
   [[nodiscard]] bool wants_directions() const { return uniform_ == nullptr; }
 
-  /// What the site's rays bring together, where it is known without looking at each: light without reflections under a
-  /// uniform environment.
-  [[nodiscard]] std::optional<wide::NetMean::Moments> moments(const LinkRound& round, const LinkBlock& block,
-                                                              std::size_t place, float isovalue) const {
-    if (uniform_ == nullptr || !e_.empty()) return std::nullopt;
-    const double hits = double(round.hits(block, place));
-    const Vec3 sky(uniform_->radiance);
-    const Vec3 emission(scene_.emission.at(isovalue));
-    return wide::NetMean::Moments{
-        .sum = (double(round.rays) - hits) * sky + hits * emission,
-        .differences = double(round.changes(block, place)) * (sky - emission) * (sky - emission)};
-  }
+  /// What a thread keeps between sites.
+  struct Scratch {
+    explicit Scratch(std::size_t rays);
 
-  /// One value a ray, in round.order. `world` holds the directions of the site's rays where they are wanted.
-  void fill(const LinkRound& round, const LinkBlock& block, std::size_t place, float isovalue,
-            const wide::Directions& world, std::vector<Vec3>& values) const {
-    const Vec3 albedo(scene_.albedo.at(isovalue));
-    const Vec3 emission(scene_.emission.at(isovalue));
-    const std::uint32_t* target = block.targets.data() + block.begins[place];
-    for (std::size_t at = 0; at < round.rays; ++at) {
-      if (round.hit(block, place, at)) {
-        values[at] = e_.empty() ? emission : emission + albedo * light_at(*target++);
-      } else if (uniform_ != nullptr) {
-        values[at] = Vec3(uniform_->radiance);
-      } else {
-        const std::uint32_t k = round.order[at];
-        values[at] = environment_.radiance({world.axis[0][k], world.axis[1][k], world.axis[2][k]});
-      }
-    }
-  }
+    std::vector<float> sky[3];        ///< by channel and ray, whether it escapes or not
+    std::vector<float> reflected[3];  ///< by channel and target
+  };
+
+  /// Where it is known without looking at each ray: light without reflections under a uniform environment.
+  [[nodiscard]] std::optional<wide::NetMean::Moments> known_moments(const LinkRound& round, const LinkBlock& block,
+                                                                    std::size_t place, float isovalue) const;
+  /// `world` holds the directions of the site's rays where they are wanted.
+  [[nodiscard]] wide::NetMean::Moments moments(const LinkRound& round, const LinkBlock& block, std::size_t place,
+                                               float isovalue, const wide::Directions& world, Scratch& scratch) const;
 
  private:
-  [[nodiscard]] Vec3 light_at(std::uint32_t target) const {
-    const float* e = &e_[target * channels_];
-    return channels_ == 1 ? Vec3(double(e[0])) : Vec3(e[0], e[1], e[2]);
-  }
+  void see_sky(const LinkRound& round, const LinkBlock& block, std::size_t place, const wide::Directions& world,
+               Scratch& scratch) const;
 
   const Scene& scene_;
-  std::span<const float> e_;
-  std::size_t channels_;
+  TargetLight e_;
   PreparedEnvironment environment_;
   const UniformEnvironment* uniform_;
+  const SkyEnvironment* sky_;
+  Vec3f up_{0.0f};
 };
 
 }  // namespace isolux

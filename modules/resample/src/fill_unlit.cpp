@@ -3,6 +3,7 @@
 #include <isolux/core/parallel.h>
 #include <isolux/resample/fill_unlit.h>
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <utility>
@@ -135,6 +136,8 @@ class Filler {
 }  // namespace
 
 IlluminationGrid fill_unlit(ResampledGrid partial, const Run& run, const FillSettings& settings) {
+  if (std::find(partial.lit.begin(), partial.lit.end(), std::uint8_t(kUnlit)) == partial.lit.end())
+    return std::move(partial.grid);
   return Filler(std::move(partial), run).fill(settings.layers);
 }
 

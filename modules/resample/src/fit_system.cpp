@@ -5,6 +5,9 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <utility>
+
+#include "cell_places.h"
 
 namespace isolux {
 namespace {
@@ -24,34 +27,18 @@ FitSystem::FitSystem(const Volume& volume, const SampleSet& samples, const Latti
 }
 
 void FitSystem::sort_rows(const Volume& volume, const SampleSet& samples, const Lattice& texels, const Run& run) {
-  const Index3 size = FitTexels::cells_of(texels);
-  const IndexToWorld volume_to_texels = index_to_index(volume.lattice(), texels);
-  std::vector<std::size_t> cell_of(samples.size());
-  std::vector<Row> unsorted(samples.size());
-  parallel_blocks(samples.size(), 65536, run, "", [&](const Block& block) {
-    for (std::size_t s = block.begin; s < block.end; ++s) {
-      const Vec3 at = volume_to_texels.world(Vec3(samples.sites.positions[s]));
-      Row& row = unsorted[s];
-      std::size_t cell = 0;
-      for (int a = 2; a >= 0; --a) {
-        // Beyond the outermost texel centres reading clamps to the edge.
-        const double x = std::clamp(at[a], 0.0, double(texels.size[a] - 1));
-        const int low = std::min(int(x), size[a] - 1);
-        row.place[std::size_t(a)] = float(x - low);
-        cell = cell * std::size_t(size[a]) + std::size_t(low);
-      }
-      row.isovalue = samples.sites.isovalues[s];
-      row.openness = {};
-      row.sample = std::uint32_t(s);
-      cell_of[s] = cell;
+  CellPlaces sorted = sort_by_cells(volume, samples.sites, texels, run);
+  starts_ = std::move(sorted.starts);
+  rows_.resize(samples.size());
+  parallel_blocks(rows_.size(), 65536, run, "", [&](const Block& block) {
+    for (std::size_t r = block.begin; r < block.end; ++r) {
+      const CellPlace& place = sorted.places[r];
+      rows_[r] = {.place = place.in_cell,
+                  .isovalue = samples.sites.isovalues[place.site],
+                  .openness = {},
+                  .sample = place.site};
     }
   });
-  starts_.assign(std::size_t(size.x) * std::size_t(size.y) * std::size_t(size.z) + 1, 0);
-  for (const std::size_t cell : cell_of) ++starts_[cell + 1];
-  for (std::size_t c = 1; c < starts_.size(); ++c) starts_[c] += starts_[c - 1];
-  std::vector<std::uint32_t> next(starts_.begin(), starts_.end() - 1);
-  rows_.resize(samples.size());
-  for (std::size_t s = 0; s < samples.size(); ++s) rows_[next[cell_of[s]]++] = unsorted[s];
 }
 
 void FitSystem::measure_near_field(const Volume& volume, const SampleSet& samples, const Run& run) {

@@ -39,17 +39,6 @@ NetMean::Moments NetMean::moments(std::span<const Vec3> values) const {
   return result;
 }
 
-NetMean::Moments NetMean::in_order(std::span<const Vec3> values) {
-  Moments result;
-  for (std::size_t k = 0; k < values.size(); ++k) {
-    result.sum += values[k];
-    if (k == 0) continue;
-    const Vec3 step = values[k] - values[k - 1];
-    result.differences += step * step;
-  }
-  return result;
-}
-
 void NetMean::put(std::span<const Vec3> values, std::size_t site, SampleSet& samples) const {
   const auto channels = std::size_t(samples.channels);
   const auto n = double(order_.size());

@@ -23,8 +23,6 @@ class NetMean {
     Vec3 differences{0.0};
   };
   [[nodiscard]] Moments moments(std::span<const Vec3> values) const;
-  /// The same of values that come in order().
-  [[nodiscard]] static Moments in_order(std::span<const Vec3> values);
   /// Neighbours of this list are neighbouring strata.
   [[nodiscard]] const std::vector<std::uint32_t>& order() const { return order_; }
 

@@ -5,3 +5,4 @@
 #include <isolux/resample/light_bricks.h>
 #include <isolux/resample/light_reader.h>
 #include <isolux/resample/resampler.h>
+#include <isolux/resample/texel_means.h>

@@ -24,10 +24,11 @@ enum class TexelLattice {
 
 /// How reflected light is found.
 enum class BounceMethod {
-  kDefault,   ///< kIterated for sites at texels unless a tracer is named, else kPaths
+  kDefault,   ///< kIterated for the resamplers direct and fit unless a tracer is named or scattered
+              ///< sites are drawn by need, else kPaths
   kIterated,  ///< rays are traced once and their hits kept; light is read there from the last iterate of the grid
-              ///< (LightLinks): several times cheaper, with the grid's own error as a small bias; does not use the
-              ///< tracer
+              ///< (LightLinks; of scattered sites: their means around the texels): several times cheaper, with the
+              ///< grid's own error as a small bias; does not use the tracer
   kPaths      ///< the tracer follows every path to its end: unbiased
 };
 
@@ -60,6 +61,9 @@ struct BakeSettings {
   double target_rmse = 0.0;
   double target_seconds = 0.0;
   bool wants_error_grid = false;  ///< fill BakeResult::error
+  /// What the kept rays of scattered sites may take, of which there may be many more than texels: where the first ones
+  /// would take more, reflections are followed by paths, and no rounds of target_rmse go beyond (BakeResult::skipped).
+  std::uint64_t most_link_bytes = std::uint64_t(4) << 30;
 };
 
 /// What lighting one side took, where both were lit.
@@ -87,7 +91,8 @@ struct BakeResult {
   std::uint32_t most_rays = 0;
   std::size_t link_bytes = 0;  ///< memory of kept rays
   /// What was known without tracing, by reason, of sites at texels: sites_flat (no gradient, hence no normal),
-  /// sites_outside_iso_range, texels_predicted.
+  /// sites_outside_iso_range, texels_predicted. Of scattered sites links_beyond_memory, rays that were not
+  /// kept, reflections being followed by paths; rounds_beyond_memory, 1 where target_rmse was not reached for that.
   std::map<std::string, std::uint64_t> skipped;
   std::map<std::string, double> seconds;  ///< by stage: sites, trace, bounces (of kIterated), resample
 };

@@ -3,9 +3,11 @@
 #include <isolux/bake/find_sites.h>
 #include <isolux/core/stopwatch.h>
 #include <isolux/raytrace_flat/light_links.h>
+#include <isolux/resample/texel_means.h>
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <vector>
 
 namespace isolux {
@@ -33,6 +35,8 @@ class KeptRays {
 
  private:
   [[nodiscard]] Solution solve(const Scene& scene, const Run& run, BakeResult& result);
+  /// The light that reflections read.
+  [[nodiscard]] IlluminationGrid between_reflections(const SampleSet& samples, const Run& run);
   /// The sites that should get more rays; none if it is enough.
   [[nodiscard]] std::vector<std::uint32_t> wanting(const Solution& solution, double solve_seconds) const;
 
@@ -43,6 +47,8 @@ class KeptRays {
   std::unique_ptr<const Resampler> resampler_;
   BakeResult begun_;  ///< what the construction found
   std::unique_ptr<LightLinks> links_;
+  std::optional<TexelMeans> means_;  ///< what scattered sites' light is read from between reflections, once it is
+  std::size_t one_of_ = 1;
   double trace_seconds_ = 0.0;
   std::vector<float> last_;  ///< e of the last solution
 };

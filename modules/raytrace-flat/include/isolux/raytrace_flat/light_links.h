@@ -18,6 +18,8 @@
 
 namespace isolux {
 
+struct TargetLight;
+
 /// What is kept of each ray.
 enum class LinkEnds : std::uint8_t {
   kKept,      ///< where it ends: any number of bounces
@@ -38,6 +40,9 @@ struct SolveSettings {
   GradientKind gradient = GradientKind::kCentralDifferences;  ///< of light sources' shadow rays
   double tolerance = 2e-3;  ///< all bounces: stop when what is left to come is less, rms over the rms of e
   int most_sweeps = 400;    ///< all bounces: stop anyhow (pockets of albedo 1 that shine)
+  /// All bounces, of sites that do not sit at the texels: iterate over one of so many sites; all of them make the last
+  /// reflection. Where many share a texel, some say as much of it.
+  std::size_t one_of = 1;
 };
 
 struct Solution {
@@ -57,8 +62,10 @@ struct Solution {
 class LightLinks {
  public:
   /// What a sweep reads from if the sites do not sit at the texels, or their links' ends are kAtTexels: e of the
-  /// samples on LinkSettings::texels, every texel filled. It must not depend on threads. Otherwise sites at texels are
-  /// read as they are and an unlit texel as the nearest lit one; this is not called then and may be empty.
+  /// samples on LinkSettings::texels, every texel filled; slopes of its detail are read too, along each ray's own level
+  /// set. It must not depend on threads. Samples are those of all sites or, where SolveSettings::one_of asks for some,
+  /// always the same some of them. Otherwise sites at texels are read as they are and an unlit texel as the nearest lit
+  /// one; this is not called then and may be empty.
   using ToGrid = std::function<IlluminationGrid(const SampleSet& samples)>;
 
   /// Traces the links. \pre as gather(); the volume must outlive the links. \throw Cancelled, InvalidInput
@@ -107,12 +114,12 @@ class LightLinks {
   [[nodiscard]] SampleSet lamp_light(const Scene& scene, const SolveSettings& settings, TraceCounters& counters,
                                      const Run& run) const;
   /// The last reflection, of the light given, with what it takes to know its noise.
-  void reflect_last(const Scene& scene, const SampleSet& lamps, std::span<const float> light,
-                    const SolveSettings& settings, Solution& solution, const Run& run) const;
-  /// e of the sites: light that comes straight from lamps, and what the rays bring; reflected light
-  /// from `e` at the targets (none if empty).
-  void add_up(const Scene& scene, const SampleSet& lamps, std::span<const float> e, SampleSet& samples,
-              const Run& run) const;
+  void reflect_last(const Scene& scene, const SampleSet& lamps, const TargetLight& light, const SolveSettings& settings,
+                    Solution& solution, const Run& run) const;
+  /// e of the sites, those apart that have no place (kLeftOut; empty: all have one): light that comes straight from
+  /// lamps, and what the rays bring; reflected light from `e` at the targets (none if empty).
+  void add_up(const Scene& scene, const SampleSet& lamps, const TargetLight& e, std::span<const std::uint32_t> places,
+              SampleSet& samples, const Run& run) const;
 
   const Volume& volume_;
   Sites sites_;

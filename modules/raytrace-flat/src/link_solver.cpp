@@ -1,0 +1,146 @@
+#include "link_solver.h"
+
+#include <isolux/core/error.h>
+#include <isolux/core/field.h>
+#include <isolux/core/parallel.h>
+#include <isolux/core/random.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <utility>
+
+#include "anderson.h"
+
+namespace isolux {
+namespace {
+
+constexpr std::size_t kSitesABlock = 8192;
+
+}  // namespace
+
+std::vector<std::uint32_t> LightLinks::Solver::places_of_some(std::size_t count, std::size_t one_of) {
+  std::vector<std::uint32_t> places(count, kLeftOut);
+  std::uint32_t next = 0;
+  for (std::size_t first = 0; first < count; first += one_of) {
+    const std::size_t site = first + std::size_t(mix_bits(first) % one_of);
+    if (site < count) places[site] = next++;
+  }
+  return places;
+}
+
+LightLinks::Solver::Solver(const LightLinks& links, const Scene& scene, const SampleSet& straight,
+                           std::vector<std::uint32_t> places, const ToGrid& to_grid, const Run& run)
+    : links_(links), scene_(scene), to_grid_(to_grid), run_(run), places_(std::move(places)) {
+  if (places_.empty()) {
+    straight_ = straight.radiance;
+    seen_ = straight;
+    return;
+  }
+  seen_.channels = straight.channels;
+  const auto channels = std::size_t(straight.channels);
+  for (std::size_t site = 0; site < places_.size(); ++site) {
+    if (places_[site] == kLeftOut) continue;
+    numbers_.push_back(std::uint32_t(site));
+    seen_.sites.positions.push_back(straight.sites.positions[site]);
+    seen_.sites.isovalues.push_back(straight.sites.isovalues[site]);
+    seen_.sites.normals.push_back(straight.sites.normals[site]);
+    seen_.variance.push_back(straight.variance[site]);
+    for (std::size_t c = 0; c < channels; ++c) straight_.push_back(straight.radiance[site * channels + c]);
+  }
+}
+
+TargetLight LightLinks::Solver::before_last(const SolveSettings& settings, std::span<const float> start,
+                                            Solution& solution) {
+  e_ = straight_;
+  if (settings.bounces != kAllBounces) {
+    for (int b = 1; b < settings.bounces; ++b) reflect(at_targets(e_)).swap(e_);
+    solution.sweeps = settings.bounces;
+    return at_targets(e_);
+  }
+  const auto channels = std::size_t(seen_.channels);
+  if (start.size() == links_.sites_.size() * channels)
+    for (std::size_t i = 0; i < e_.size(); ++i)
+      e_[i] = start[numbers_.empty() ? i : numbers_[i / channels] * channels + i % channels];
+  Anderson anderson(run_);
+  while (solution.sweeps < settings.most_sweeps) {
+    ++solution.sweeps;
+    solution.change = anderson.step(e_, reflect(at_targets(e_)));
+    if (run_.progress) run_.progress("bounces", double(solution.sweeps) / double(settings.most_sweeps));
+    if (solution.change <= settings.tolerance) break;
+  }
+  return at_targets(e_);
+}
+
+std::vector<float> LightLinks::Solver::reflect(const TargetLight& light) const {
+  const std::size_t stride = light.stride();
+  const std::size_t channels = light.channels;
+  const std::vector<float>& isovalues = seen_.sites.isovalues;
+  std::vector<float> sums(isovalues.size() * stride, 0.0f);
+  for (const LinkRound& round : links_.rounds_->all) add_targets(round, stride, light.values, places_, sums, run_);
+  std::vector<float> next(straight_.size());
+  parallel_blocks(isovalues.size(), kSitesABlock, run_, "", [&](const Block& block) {
+    for (std::size_t i = block.begin; i < block.end; ++i) {
+      const std::size_t site = numbers_.empty() ? i : numbers_[i];
+      const Vec3f albedo = scene_.albedo.at(isovalues[i]) / float(links_.rays_[site]);
+      for (std::size_t c = 0; c < channels; ++c) {
+        float sum = sums[i * stride + c];
+        if (light.sloped) sum += sums[i * stride + channels + c] * (isovalues[i] - light.isovalue);
+        next[i * channels + c] = straight_[i * channels + c] + albedo[int(c)] * sum;
+      }
+    }
+  });
+  return next;
+}
+
+TargetLight LightLinks::Solver::at_targets(const std::vector<float>& e) {
+  const auto channels = std::size_t(seen_.channels);
+  if (reads_sites()) return {.values = e, .channels = channels};
+  if (!to_grid_) throw InvalidInput("the sites do not sit at the texels: bounces want a way from samples to a grid");
+  seen_.radiance = e;
+  IlluminationGrid grid = to_grid_(seen_);
+  if (grid.lattice.size != links_.rounds_->targets->texels().size || grid.channels != seen_.channels)
+    throw InvalidInput("the grid of reflected light is not of the links' texels and the scene's channels");
+  if (!grid.detail.slopes.empty()) return sloped(grid);
+  light_ = std::move(grid.values);
+  return {.values = light_, .channels = channels};
+}
+
+TargetLight LightLinks::Solver::sloped(const IlluminationGrid& grid) {
+  if (texels_.empty()) measure_texels();
+  const auto channels = std::size_t(grid.channels);
+  const std::vector<float>& slopes = grid.detail.slopes;
+  light_.resize(2 * grid.values.size());
+  parallel_blocks(texels_.size(), kSitesABlock, run_, "", [&](const Block& block) {
+    for (std::size_t t = block.begin; t < block.end; ++t) {
+      for (std::size_t c = 0; c < channels; ++c) {
+        const std::size_t from = t * channels + c;
+        const std::size_t to = 2 * t * channels + c;
+        light_[to] = grid.values[from] - slopes[from] * texels_[t];
+        light_[to + channels] = slopes[from];
+      }
+    }
+  });
+  return {.values = light_, .channels = channels, .sloped = true, .isovalue = middle_};
+}
+
+void LightLinks::Solver::measure_texels() {
+  double sum = 0.0;
+  for (const float isovalue : seen_.sites.isovalues) sum += double(isovalue);
+  middle_ = float(sum / double(std::max<std::size_t>(seen_.size(), 1)));
+  const TrilinearField field(links_.volume_);
+  const Lattice& texels = links_.rounds_->targets->texels();
+  const IndexToWorld to_volume = index_to_index(texels, links_.volume_.lattice());
+  const auto nx = std::size_t(texels.size.x);
+  const auto ny = std::size_t(texels.size.y);
+  texels_.resize(texels.count());
+  parallel_blocks(texels_.size(), kSitesABlock, run_, "", [&](const Block& block) {
+    for (std::size_t t = block.begin; t < block.end; ++t) {
+      const std::size_t j = t / nx % ny;
+      const std::size_t k = t / (nx * ny);
+      const Vec3 centre = to_volume.world({double(t % nx), double(j), double(k)});
+      texels_[t] = float(field.value(centre) - double(middle_));
+    }
+  });
+}
+
+}  // namespace isolux
