@@ -1,5 +1,6 @@
 #include <isolux/core/error.h>
 #include <isolux/core/parallel.h>
+#include <tbb/global_control.h>
 #include <tbb/info.h>
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
@@ -7,6 +8,7 @@
 #include <algorithm>
 #include <atomic>
 #include <mutex>
+#include <optional>
 
 namespace isolux {
 
@@ -16,12 +18,7 @@ void throw_if_stopped(const Run& run) {
 
 std::size_t block_count(std::size_t count, std::size_t block_size) { return (count + block_size - 1) / block_size; }
 
-int thread_count(const Run& run) {
-  // More threads than cores would need a tbb::global_control, and ending one can wait forever in oneTBB 2021.8 (Debian
-  // 12), for workers that have gone to sleep.
-  const int cores = tbb::info::default_concurrency();
-  return run.threads > 0 ? std::min(run.threads, cores) : cores;
-}
+int thread_count(const Run& run) { return run.threads > 0 ? run.threads : tbb::info::default_concurrency(); }
 
 void parallel_blocks(std::size_t count, std::size_t block_size, const Run& run, std::string_view stage,
                      const std::function<void(const Block&)>& body) {
@@ -41,6 +38,12 @@ void parallel_blocks(std::size_t count, std::size_t block_size, const Run& run, 
   if (threads == 1) {
     for (std::size_t b = 0; b < blocks; ++b) work(b);
   } else {
+    // oneTBB prints a warning when it is asked for more threads than this process may run at once, unless told so
+    // before.
+    std::optional<tbb::global_control> more_than_cores;
+    if (threads > tbb::info::default_concurrency()) {
+      more_than_cores.emplace(tbb::global_control::max_allowed_parallelism, std::size_t(threads));
+    }
     tbb::task_arena arena(threads);
     arena.execute([&] { tbb::parallel_for(std::size_t(0), blocks, work, tbb::simple_partitioner()); });
   }

@@ -10,7 +10,7 @@ namespace isolux {
 /// How a long operation runs; the same for every stage. The result never depends on `threads`.
 struct Run {
   std::uint64_t seed = 1;
-  int threads = 0;         ///< 0: all the machine has; never more
+  int threads = 0;         ///< 0: all the machine has
   std::stop_token stop{};  ///< when triggered the operation throws Cancelled soon
   /// Called now and then with the stage's name and the part done (0 to 1), from any thread but never from two at once.
   std::function<void(std::string_view stage, double fraction)> progress{};
