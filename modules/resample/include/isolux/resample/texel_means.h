@@ -12,8 +12,8 @@ namespace isolux {
 /// Scattered samples as a straight line over the isovalue at each texel (LightDetail::slopes), the samples weighted as
 /// trilinear reading weights the texel: what light between reflections is read from where sites stay and their light
 /// changes. Sites are sorted once; a call reads each of them once, some 20 ns a site. Constants are kept to
-/// rounding, light that is linear in the isovalue where samples are many. A texel's samples are added in one order: the same for any number
-/// of threads.
+/// rounding, light that is linear in the isovalue where samples are many. A texel's samples are added in one order: the
+/// same for any number of threads.
 class TexelMeans {
  public:
   TexelMeans(const Volume& volume, const Sites& sites, const Lattice& texels, const Run& run);
