@@ -13,7 +13,7 @@ namespace isolux {
 namespace {
 
 /// Sites of a block lie far apart in memory: how many early they are asked for.
-constexpr std::size_t kAhead = 16;
+constexpr std::size_t kTargetsAhead = 16;
 
 /// Adds the light of one site's targets. Two sums at once hide half of the additions' latency.
 template <int stride>
@@ -39,9 +39,10 @@ void add_block(const LinkBlock& block, std::span<const float> light, std::span<c
   for (std::size_t s = 0; s < block.sites.size(); ++s) {
     std::size_t place = block.sites[s];
     if (places.empty()) {
-      if (s + kAhead < block.sites.size()) hwy::Prefetch(&sums[std::size_t(block.sites[s + kAhead]) * stride]);
+      if (s + kTargetsAhead < block.sites.size())
+        hwy::Prefetch(&sums[std::size_t(block.sites[s + kTargetsAhead]) * stride]);
     } else {
-      if (s + kAhead < block.sites.size()) hwy::Prefetch(&places[block.sites[s + kAhead]]);
+      if (s + kTargetsAhead < block.sites.size()) hwy::Prefetch(&places[block.sites[s + kTargetsAhead]]);
       if (places[place] == kLeftOut) continue;
       place = places[place];
     }
