@@ -84,7 +84,8 @@ struct Truth {
 SampleSet trace_in(const Subject& subject, Sites sites, int rays, std::uint64_t seed) {
   return tracers()
       .create()
-      ->trace(subject.volume, subject.scene, std::move(sites), {.rays = rays, .bounces = 0}, {.seed = seed})
+      ->trace(subject.volume, subject.scene, std::move(sites),
+              {.rays = rays, .bounces = 0, .nets = RayNets::kInterleaved}, {.seed = seed})
       .samples;
 }
 

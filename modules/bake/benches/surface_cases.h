@@ -127,7 +127,8 @@ inline SampleSet trace(const Volume& volume, Sites sites, int rays, std::uint64_
   const Scene scene;
   return tracers()
       .create()
-      ->trace(volume, scene, std::move(sites), {.rays = rays, .bounces = 0}, {.seed = seed})
+      ->trace(volume, scene, std::move(sites), {.rays = rays, .bounces = 0, .nets = RayNets::kInterleaved},
+              {.seed = seed})
       .samples;
 }
 

@@ -30,7 +30,9 @@ BakeResult bake_paths(const Volume& volume, const Scene& scene, const BakeSettin
   const Lattice texels = texel_lattice(volume.lattice(), settings);
   BakeResult result = std::move(found.begun);
   const Stopwatch watch;
-  const TraceResult traced = tracer->trace(volume, scene, std::move(found.sites), settings.trace, run);
+  TraceSettings trace = settings.trace;
+  trace.nets = RayNets::kInterleaved;
+  const TraceResult traced = tracer->trace(volume, scene, std::move(found.sites), trace, run);
   result.seconds["trace"] = watch.seconds();
   result.counters = traced.counters;
   result.least_rays = result.most_rays = std::uint32_t(settings.trace.rays);

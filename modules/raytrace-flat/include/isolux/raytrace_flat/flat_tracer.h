@@ -13,10 +13,17 @@ namespace isolux {
 /// Bounces until nothing is left.
 inline constexpr int kAllBounces = -1;
 
+/// How the nets of neighbouring sites' rays belong together.
+enum class RayNets : std::uint8_t {
+  kIndependent,  ///< each site's is its own, and can go on (first_ray)
+  kInterleaved   ///< those of sites close together are one net: less noise in means over neighbours, the same in each
+};
+
 struct TraceSettings {
   int rays = 64;              ///< a site: directions over the hemisphere
   int bounces = kAllBounces;  ///< reflections; 0: a hit is black unless it emits
   GradientKind gradient = GradientKind::kCentralDifferences;
+  RayNets nets = RayNets::kIndependent;  ///< of the first rays; `scalar` keeps them independent
 };
 
 struct TraceResult {

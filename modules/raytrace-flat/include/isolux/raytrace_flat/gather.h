@@ -20,12 +20,6 @@ enum class RayQuestion : std::uint8_t {
   kFirstHit  ///< where it does first
 };
 
-/// How the nets of neighbouring sites' rays belong together.
-enum class RayNets : std::uint8_t {
-  kIndependent,  ///< each site's is its own, and can go on (first_ray)
-  kInterleaved   ///< those of sites close together are one net: less noise in means over neighbours, the same in each
-};
-
 struct GatherSettings {
   int rays = 64;  ///< a site
   OuterSide outer = OuterSide::kLower;
