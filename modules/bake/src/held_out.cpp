@@ -53,15 +53,22 @@ void HeldOut::draw(const Lattice& texels, const TexelSiteMaker& sites, const Run
   if (can_be_lit > 0.0) from_shares(std::min(count, std::size_t(std::ceil(wanted / can_be_lit))));
 }
 
-double HeldOut::squared_error(std::span<const float> light) const {
-  if (texels_.empty()) return 0.0;
+HeldOut::SquaredError HeldOut::squared_error(std::span<const float> light) const {
+  if (texels_.empty()) return {};
   const std::size_t channels = light_[0].size() / texels_.size();
   double sum = 0.0;
+  double squares = 0.0;
   for (std::size_t i = 0; i < light_[0].size(); ++i) {
     const auto predicted = double(light[texels_[i / channels] * channels + i % channels]);
-    sum += (double(light_[0][i]) - predicted) * (double(light_[1][i]) - predicted);
+    const double product = (double(light_[0][i]) - predicted) * (double(light_[1][i]) - predicted);
+    sum += product;
+    squares += product * product;
   }
-  return std::max(0.0, sum / double(light_[0].size()));
+  const auto count = double(light_[0].size());
+  const double mean = sum / count;
+  // The channels of a texel are taken for one another's copies.
+  const double variance = std::max(0.0, squares / count - mean * mean) / double(texels_.size());
+  return {.mean = std::max(0.0, mean), .standard_error = std::sqrt(variance)};
 }
 
 }  // namespace isolux

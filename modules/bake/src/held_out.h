@@ -21,8 +21,12 @@ class HeldOut {
   HeldOut(const Volume& volume, const Scene& scene, const Lattice& texels, const TexelSiteMaker& sites,
           const TraceSettings& settings, const Run& run);
 
+  struct SquaredError {
+    double mean = 0.0;
+    double standard_error = 0.0;  ///< of the mean, as the texels are few and their light is noisy
+  };
   /// Of light at all texels, the scene's channels each.
-  [[nodiscard]] double squared_error(std::span<const float> light) const;
+  [[nodiscard]] SquaredError squared_error(std::span<const float> light) const;
   [[nodiscard]] const TraceCounters& counters() const { return counters_; }
 
  private:

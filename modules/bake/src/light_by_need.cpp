@@ -57,8 +57,11 @@ class ByNeed {
     int stalled = 0;
     for (int round = 0;; ++round) {
       solve(result);
-      const double before = std::exchange(squared_error_, held_out.squared_error(light_));
-      if (squared_error_ <= settings_.target_rmse * settings_.target_rmse || round == kMostRoundsByNeed) break;
+      const HeldOut::SquaredError found = held_out.squared_error(light_);
+      const double before = std::exchange(squared_error_, found.mean);
+      // Not by luck: of many rounds one is the first whose figure is low by chance.
+      const bool reached = found.mean + found.standard_error <= settings_.target_rmse * settings_.target_rmse;
+      if (reached || round == kMostRoundsByNeed) break;
       stalled = round > 0 && squared_error_ > kProgress * before ? stalled + 1 : 0;
       if (stalled == kMostStalled) break;
       if (!take_steps()) break;

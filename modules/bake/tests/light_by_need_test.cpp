@@ -66,15 +66,23 @@ TEST(LightByNeed, EstimatesTheTrueErrorOfReflectedLight) {
 }
 
 TEST(LightByNeed, SaysWhatReadingReflectionsFromFewTexelsCosts) {
-  // Twelve texels a wave are too few to read reflected light from: no number of rays reaches .02, and none is spent in
-  // vain for long.
-  const Volume volume = read_volume("gen:gyroid:25");
-  const BakeResult result = bake(volume, Scene{}, by_need(0.02, kAllBounces), builtin_stages(), isolux::Run{});
-  EXPECT_GT(result.rmse_estimate, 0.02);
+  // In noise a texel says little of the light between itself and the next: no number of rays reaches .03, and none is
+  // spent in vain for long.
+  const Volume volume = read_volume("gen:noise:17");
+  const BakeResult result = bake(volume, Scene{}, by_need(0.03, kAllBounces), builtin_stages(), isolux::Run{});
+  EXPECT_GT(result.rmse_estimate, 0.03);
   const double found = difference_from_paths(volume, result.light, kAllBounces, 64);
   EXPECT_LT(found, 1.3 * result.rmse_estimate);
   EXPECT_GT(found, result.rmse_estimate / 1.3);
   EXPECT_LT(double(result.counters.rays), 2048.0 * double(result.light.lattice.count()));
+}
+
+TEST(LightByNeed, ReadsReflectionsFromTwelveTexelsAWave) {
+  // Texels of other isovalues beside the end of a ray would make it .047.
+  const Volume volume = read_volume("gen:gyroid:25");
+  const BakeResult result = bake(volume, Scene{}, by_need(0.02, kAllBounces), builtin_stages(), isolux::Run{});
+  EXPECT_LE(result.rmse_estimate, 0.02);
+  EXPECT_LT(difference_from_paths(volume, result.light, kAllBounces, 64), 0.026);
 }
 
 TEST(LightByNeed, MatchesTheOpenIntegratingSphere) {
@@ -100,10 +108,9 @@ TEST(LightByNeed, MatchesTheOpenIntegratingSphere) {
     }
   }
   ASSERT_GT(count, 5000);
-  // Asked are .01; where level sets end at the box's faces light is least smooth. Reading reflected light from texels
-  // has a bias of its own: -.0015 where all texels are traced, and -.006 measured here, where most are predicted.
-  EXPECT_LT(std::sqrt(squares / count), 0.02);
-  EXPECT_LT(std::fabs(sum / count), 0.008);
+  // Asked are .01, of all texels; a bias of reading reflected light from texels, most of them predicted, is in it.
+  EXPECT_LT(std::sqrt(squares / count), 0.012);
+  EXPECT_LT(std::fabs(sum / count), 0.005);
 }
 
 TEST(LightByNeed, PredictsMostOfSmoothLight) {

@@ -37,7 +37,8 @@ LightLinks::LightLinks(const Volume& volume, Sites sites, const LinkSettings& se
   const Lattice texels = settings.texels.value_or(cell_lattice(volume.lattice()));
   if (settings.ends == LinkEnds::kKept)
     rounds_->targets = std::make_shared<const LinkTargets>(volume, sites_, texels, run);
-  if (settings.ends == LinkEnds::kAtTexels) rounds_->targets = std::make_shared<const LinkTargets>(volume, texels);
+  if (settings.ends == LinkEnds::kAtTexels)
+    rounds_->targets = std::make_shared<const LinkTargets>(volume, texels, LinkTargets::Weights::kByIsovalue, run);
   trace(0, std::size_t(settings.rays), {}, run);
   probes_ = wide::choose_probes(sites_);
   Run other = run;

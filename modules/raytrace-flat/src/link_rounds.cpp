@@ -81,20 +81,22 @@ class BlockMaker {
  private:
   void add_site(const GatheredRays& gathered, std::size_t place, std::uint32_t site, std::uint64_t* hits,
                 std::vector<std::uint32_t>& targets) const {
-    const LinkTargets::Draws draws = LinkTargets::draws_of(seed_, site);
-    const Vec3 origin(sites_.positions[site]);
     for (std::size_t at = 0; at < request_.rays; ++at)
       hits[at / 64] |= std::uint64_t(!gathered.escaped(place * request_.rays + order_[at])) << at % 64;
     if (request_.question == RayQuestion::kAnyHit) return;
+    static thread_local std::vector<LinkTargets::End> ends;
+    ends.clear();
+    const Vec3 origin(sites_.positions[site]);
     for (std::size_t at = 0; at < request_.rays; ++at) {
       if ((hits[at / 64] >> at % 64 & 1) == 0) continue;
       const std::size_t k = order_[at];
       const std::size_t i = place * request_.rays + k;
       const Vec3 direction(gathered.index_direction[0][i], gathered.index_direction[1][i],
                            gathered.index_direction[2][i]);
-      targets.push_back(targets_->target(origin + double(gathered.index_distance[i]) * direction, draws,
-                                         std::uint32_t(request_.first + k)));
+      ends.push_back(
+          {.index = origin + double(gathered.index_distance[i]) * direction, .ray = std::uint32_t(request_.first + k)});
     }
+    targets_->append_targets(ends, sites_.isovalues[site], LinkTargets::draws_of(seed_, site), targets);
   }
 
   const Sites& sites_;

@@ -1,12 +1,18 @@
 #include "link_targets.h"
 
 #include <fmt/format.h>
+#include <hwy/cache_control.h>
 #include <isolux/core/error.h>
+#include <isolux/core/field.h>
+#include <isolux/core/parallel.h>
 #include <isolux/core/random.h>
 #include <isolux/core/spread_labels.h>
 
 #include <algorithm>
 #include <cmath>
+#include <glm/common.hpp>
+
+#include "wide/draw_corners.h"
 
 namespace isolux {
 namespace {
@@ -14,28 +20,67 @@ namespace {
 /// Float positions of sites at texel centres are off by less than this up to some 10,000 voxels an axis.
 constexpr double kTolerance = 0.01;
 
+/// Isovalues at the centres of the texels.
+std::vector<float> isovalues_of(const Volume& volume, const Lattice& texels, const Run& run) {
+  const TrilinearField field(volume);
+  const IndexToWorld to_volume = index_to_index(texels, volume.lattice());
+  const auto nx = std::size_t(texels.size.x);
+  const auto ny = std::size_t(texels.size.y);
+  std::vector<float> isovalues(texels.count());
+  parallel_blocks(isovalues.size(), 8192, run, "", [&](const Block& block) {
+    for (std::size_t t = block.begin; t < block.end; ++t) {
+      const std::size_t j = t / nx % ny;
+      const std::size_t k = t / (nx * ny);
+      isovalues[t] = float(field.value(to_volume.world({double(t % nx), double(j), double(k)})));
+    }
+  });
+  return isovalues;
+}
+
 }  // namespace
 
-LinkTargets::LinkTargets(const Volume& volume, const Lattice& texels)
+LinkTargets::LinkTargets(const Volume& volume, const Lattice& texels, Weights weights, const Run& run)
     : texels_(texels), to_texel_(index_to_index(volume.lattice(), texels)) {
   if (texels.count() >= kNoLabel)
     throw InvalidInput(fmt::format("{} texels; light links take at most 2^32 - 2", texels.count()));
+  for (int q = 0; q < 8; ++q) {
+    const Index3 upper = glm::min(Index3(q & 1, q >> 1 & 1, q >> 2), texels.size - 1);
+    corner_[std::size_t(q)] = texels.offset(upper.x, upper.y, upper.z);
+  }
+  if (weights == Weights::kTrilinear) return;
+  own_isovalues_ = isovalues_of(volume, texels, run);
+  isovalues_ = own_isovalues_;
 }
 
 LinkTargets::LinkTargets(const Volume& volume, const Sites& sites, const Lattice& texels, const Run& run)
-    : LinkTargets(volume, texels) {
-  site_of_texel_.assign(texels.count(), kNoLabel);
+    : LinkTargets(volume, texels, Weights::kTrilinear, run) {
+  are_sites_ = sites.size() > 0 && find_sites(sites, run);
+  if (!are_sites_) {
+    site_of_texel_ = {};
+    return;
+  }
+  bool in_order = sites.size() == site_of_texel_.size();
+  for (std::size_t t = 0; in_order && t < site_of_texel_.size(); ++t) in_order = site_of_texel_[t] == t;
+  if (in_order) {
+    site_of_texel_ = {};
+    isovalues_ = sites.isovalues;
+    return;
+  }
+  spread_labels(texels.size, site_of_texel_);
+  own_isovalues_.reserve(site_of_texel_.size());
+  for (const std::uint32_t site : site_of_texel_) own_isovalues_.push_back(sites.isovalues[site]);
+  isovalues_ = own_isovalues_;
+}
+
+bool LinkTargets::find_sites(const Sites& sites, const Run& run) {
+  site_of_texel_.assign(texels_.count(), kNoLabel);
   for (std::size_t s = 0; s < sites.size(); ++s) {
     if (s % 65536 == 0) throw_if_stopped(run);
     const std::uint32_t texel = texel_at(sites.positions[s]);
-    if (texel == kNoLabel || site_of_texel_[texel] != kNoLabel) {
-      site_of_texel_ = {};
-      return;
-    }
+    if (texel == kNoLabel || site_of_texel_[texel] != kNoLabel) return false;
     site_of_texel_[texel] = std::uint32_t(s);
   }
-  if (sites.size() == 0) site_of_texel_ = {};
-  if (sites.size() < site_of_texel_.size()) spread_labels(texels.size, site_of_texel_);
+  return true;
 }
 
 std::uint32_t LinkTargets::texel_at(const Vec3f& index) const {
@@ -56,20 +101,61 @@ LinkTargets::Draws LinkTargets::draws_of(std::uint64_t seed, std::size_t site) {
   return {{std::uint32_t(a), std::uint32_t(a >> 32), std::uint32_t(b)}};
 }
 
-std::uint32_t LinkTargets::target(const Vec3& index, const Draws& draws, std::uint32_t ray) const {
+LinkTargets::Place LinkTargets::place(const Vec3& index) const {
+  const Vec3 at = to_texel_.world(index);
+  Place place{};
+  int low[3];
+  for (int a = 0; a < 3; ++a) {
+    const double x = std::clamp(at[a], 0.0, double(texels_.size[a] - 1));
+    low[a] = std::min(int(x), std::max(texels_.size[a] - 2, 0));
+    place.part[std::size_t(a)] = float(x - double(low[a]));
+  }
+  place.texel = std::uint32_t(texels_.offset(low[0], low[1], low[2]));
+  return place;
+}
+
+void LinkTargets::append_targets(std::span<const End> ends, float isovalue, const Draws& draws,
+                                 std::vector<std::uint32_t>& targets) const {
+  // All ends are asked for before the first is looked at: they lie far apart in memory.
+  static thread_local std::vector<Place> places;
+  places.clear();
+  for (const End& end : ends) {
+    places.push_back(place(end.index));
+    if (isovalues_.empty()) continue;
+    for (std::size_t q = 0; q < 8; q += 2) hwy::Prefetch(&isovalues_[places.back().texel + corner_[q]]);
+  }
+  const std::size_t before = targets.size();
+  targets.resize(before + ends.size());
+  for (std::size_t i = 0; i < ends.size(); i += wide::CornerDraws::kMost) {
+    const std::size_t count = std::min(wide::CornerDraws::kMost, ends.size() - i);
+    draw_texels(ends.subspan(i, count), {&places[i], count}, isovalue, draws, &targets[before + i]);
+  }
+  if (site_of_texel_.empty()) return;
+  for (std::size_t i = before; i < targets.size(); ++i) targets[i] = site_of_texel_[targets[i]];
+}
+
+void LinkTargets::draw_texels(std::span<const End> ends, std::span<const Place> places, float isovalue,
+                              const Draws& draws, std::uint32_t* texels) const {
   // Powers of 1 / 1.2207, the root of x^4 = x + 1, as fractions of 2^32: a lattice of low discrepancy in three
   // dimensions (Roberts 2018), so that rays of a site that end together draw different texels.
   constexpr std::uint32_t kStep[3] = {0xD1B54A33u, 0xABC98388u, 0x8CB92BA7u};
-  const Vec3 at = to_texel_.world(index);
-  int i[3];
-  for (int a = 0; a < 3; ++a) {
-    const double x = std::clamp(at[a], 0.0, double(texels_.size[a] - 1));
-    i[a] = int(x);
-    const double draw = double(draws.start[a] + ray * kStep[a]) * 0x1p-32;
-    i[a] += int(draw < x - double(i[a]));
+  wide::CornerDraws drawn{};
+  const bool by_isovalue = !isovalues_.empty();
+  for (std::size_t lane = 0; lane < places.size(); ++lane) {
+    for (std::size_t a = 0; a < 3; ++a) {
+      drawn.part[a][lane] = places[lane].part[a];
+      // 24 bits, so that it stays below 1.
+      drawn.uniform[a][lane] = float(std::int32_t((draws.start[a] + ends[lane].ray * kStep[a]) >> 8)) * 0x1p-24f;
+    }
+    if (!by_isovalue) continue;
+    const float* const lowest = &isovalues_[places[lane].texel];
+    for (std::size_t q = 0; q < 8; ++q) drawn.away[q][lane] = lowest[corner_[q]] - isovalue;
   }
-  const std::size_t texel = texels_.offset(i[0], i[1], i[2]);
-  return are_sites() ? site_of_texel_[texel] : std::uint32_t(texel);
+  wide::draw_corners(drawn, places.size(), by_isovalue);
+  for (std::size_t lane = 0; lane < places.size(); ++lane) {
+    texels[lane] = std::uint32_t(places[lane].texel + corner_[drawn.corner[lane]]);
+    if (!site_of_texel_.empty()) hwy::Prefetch(&site_of_texel_[texels[lane]]);
+  }
 }
 
 }  // namespace isolux

@@ -5,23 +5,36 @@
 #include <isolux/core/sample_set.h>
 #include <isolux/core/volume.h>
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 namespace isolux {
 
-/// Whose light the end of a ray reads: one of the eight texels around it, drawn by its trilinear weight, so that the
-/// mean over the draws is the trilinear interpolant. Where the sites sit at the texels the target is a site (an unlit
-/// texel stands for the nearest lit one, counted in steps across faces), else a texel.
+/// Whose light the end of a ray reads: one of the eight texels around it, drawn by a weight, so that the mean over the
+/// draws is an interpolant of them. Where the sites sit at the texels the target is a site (an unlit texel stands for
+/// the nearest lit one, counted in steps across faces), else a texel.
+///
+/// The weight is trilinear and, unless the light read has slopes, falls with what lies between the isovalues of the
+/// ray and of the texel (a bilateral weight: Tomasi & Manduchi, "Bilateral filtering for gray and color images", 1998;
+/// here the range is the isovalue). A ray ends on its own level set; the light of the level sets around, which lie more
+/// open on one side and less on the other, does not cancel out, and reflections multiply what is left of it.
 class LinkTargets {
  public:
-  /// Texels, whoever the sites are. \throw InvalidInput
-  LinkTargets(const Volume& volume, const Lattice& texels);
-  /// Sites where these sit at the texels. \throw InvalidInput, Cancelled
-  LinkTargets(const Volume& volume, const Sites& sites, const Lattice& texels, const Run& run);
+  /// How a texel's weight depends on its isovalue.
+  enum class Weights : std::uint8_t { kTrilinear, kByIsovalue };
 
-  [[nodiscard]] bool are_sites() const { return !site_of_texel_.empty(); }
+  /// Texels, whoever the sites are. By isovalue, these are the field's at the centres. \throw InvalidInput, Cancelled
+  LinkTargets(const Volume& volume, const Lattice& texels, Weights weights, const Run& run);
+  /// Sites where these sit at the texels, and then by their isovalues; else texels, trilinear. \pre the sites outlive
+  /// this, in place. \throw InvalidInput, Cancelled
+  LinkTargets(const Volume& volume, const Sites& sites, const Lattice& texels, const Run& run);
+  LinkTargets(const LinkTargets&) = delete;
+  LinkTargets& operator=(const LinkTargets&) = delete;
+
+  [[nodiscard]] bool are_sites() const { return are_sites_; }
   [[nodiscard]] const Lattice& texels() const { return texels_; }
 
   /// Uniform numbers for the draws of one site, as fractions of 2^32.
@@ -30,16 +43,37 @@ class LinkTargets {
   };
   [[nodiscard]] static Draws draws_of(std::uint64_t seed, std::size_t site);
 
-  /// The target of ray `ray` that ends at `index`, a place in the volume's index space.
-  [[nodiscard]] std::uint32_t target(const Vec3& index, const Draws& draws, std::uint32_t ray) const;
+  /// Where a ray ends, in the volume's index space.
+  struct End {
+    Vec3 index;
+    std::uint32_t ray;  ///< its number in the site's sequence
+  };
+  /// Appends the targets of rays of one site, in their order.
+  void append_targets(std::span<const End> ends, float isovalue, const Draws& draws,
+                      std::vector<std::uint32_t>& targets) const;
 
  private:
+  /// Between eight texels: the lowest of them, and the part of the way to the upper ones.
+  struct Place {
+    std::uint32_t texel;
+    std::array<float, 3> part;
+  };
+  [[nodiscard]] Place place(const Vec3& index) const;
+  /// The texels of some ends, no more than there are lanes.
+  void draw_texels(std::span<const End> ends, std::span<const Place> places, float isovalue, const Draws& draws,
+                   std::uint32_t* texels) const;
   /// The texel whose centre the place is within rounding; kNoLabel if there is none.
   [[nodiscard]] std::uint32_t texel_at(const Vec3f& index) const;
+  /// False if the sites do not sit at the texels, one each at most.
+  [[nodiscard]] bool find_sites(const Sites& sites, const Run& run);
 
   Lattice texels_;
   IndexToWorld to_texel_;
-  std::vector<std::uint32_t> site_of_texel_;  ///< empty if the sites do not sit at the texels
+  std::array<std::size_t, 8> corner_{};  ///< of eight texels, less the lowest; bits: 1 is x, 2 is y, 4 is z
+  bool are_sites_ = false;
+  std::vector<std::uint32_t> site_of_texel_;  ///< empty if a site's number is its texel's, or the sites sit elsewhere
+  std::vector<float> own_isovalues_;
+  std::span<const float> isovalues_{};  ///< of the texels, or of who stands for them; empty: weights are trilinear
 };
 
 }  // namespace isolux
