@@ -55,10 +55,10 @@ struct Solution {
 /// Hemisphere rays of a set of sites, traced once and kept by where they end: light that is reflected any number of
 /// times is then found by iterating over the kept ends, e(x) = direct(x) + rho(h) * mean of e(y) over the ends y, with
 /// e(y) read from the last iterate (radiosity's gathering; here a final gather at every texel). Each ray reads ONE of
-/// the texels around its end, drawn once by its trilinear weight: on average the trilinear interpolant, and a sweep is
-/// a product with a sparse matrix. Albedo, emission and the environment change without another ray; light sources cost
-/// shadow rays. The grid's error enters as a bias. Memory: 4 bytes a ray that hits, a bit a ray and 16 bytes a site.
-/// Queries may be called from many threads.
+/// the texels around its end, drawn once by its trilinear weight and, where targets have no slopes, by how near its
+/// isovalue is to the ray's: a sweep is a product with a sparse matrix. Albedo, emission and the environment change
+/// without another ray; light sources cost shadow rays. The grid's error enters as a bias. Memory: 4 bytes a ray that
+/// hits, a bit a ray and 16 bytes a site. Queries may be called from many threads.
 class LightLinks {
  public:
   /// What a sweep reads from if the sites do not sit at the texels, or their links' ends are kAtTexels: e of the
