@@ -167,7 +167,9 @@ void LightLinks::add_up(const Scene& scene, const SampleSet& lamps, const Target
             // The directions are a function of seed and site: they are made again, not kept.
             batch.rays.count = 0;
             if (brought.wants_directions()) aimer.append(sites_, site, batch.rays, batch.world);
-            known = brought.moments(round, block, place, sites_.isovalues[site], batch.world, scratch);
+            const auto& world = batch.world.axis;
+            known = brought.moments(round, block, place, sites_.isovalues[site],
+                                    {world[0].data(), world[1].data(), world[2].data()}, scratch);
           }
           const wide::NetMean::Moments& moments = *known;
           for (std::size_t c = 0; c < channels; ++c) {

@@ -55,23 +55,24 @@ void add_block(const LinkBlock& block, std::span<const float> light, std::span<c
 class BlockMaker {
  public:
   BlockMaker(const Sites& sites, std::span<const std::uint32_t> numbers, const LinkTargets* targets,
-             const RoundRequest& request, std::span<const std::uint32_t> order, std::uint64_t seed)
-      : sites_(sites), numbers_(numbers), targets_(targets), request_(request), order_(order), seed_(seed) {}
+             RayQuestion question, const LinkRound& round, std::uint64_t seed)
+      : sites_(sites), numbers_(numbers), targets_(targets), question_(question), round_(round), seed_(seed) {}
 
   [[nodiscard]] LinkBlock make(const GatheredRays& gathered) const {
-    const std::size_t words = (request_.rays + 63) / 64;
     // Kept from block to block: growing each block's own would leave holes of its size in memory.
     static thread_local std::vector<std::uint32_t> found;
     found.clear();
     LinkBlock block;
-    block.hits.assign(gathered.sites.size() * words, 0);
+    block.hits.assign(gathered.sites.size() * round_.words(), 0);
     block.sites.reserve(gathered.sites.size());
     block.begins.reserve(gathered.sites.size() + 1);
-    for (std::size_t s = 0; s < gathered.sites.size(); ++s) {
-      const std::uint32_t site = numbers_.empty() ? gathered.sites[s] : numbers_[gathered.sites[s]];
+    for (std::size_t place = 0; place < gathered.sites.size(); ++place) {
+      const std::uint32_t site = numbers_.empty() ? gathered.sites[place] : numbers_[gathered.sites[place]];
       block.sites.push_back(site);
       block.begins.push_back(std::uint32_t(found.size()));
-      if (sites_.normals[site] != Vec3f(0.0f)) add_site(gathered, s, site, &block.hits[s * words], found);
+      if (sites_.normals[site] == Vec3f(0.0f)) continue;
+      mark_hits(gathered, place, round_, block);
+      if (question_ == RayQuestion::kFirstHit) append_targets(gathered, place, block, found);
     }
     block.begins.push_back(std::uint32_t(found.size()));
     block.targets.assign(found.begin(), found.end());
@@ -79,22 +80,20 @@ class BlockMaker {
   }
 
  private:
-  void add_site(const GatheredRays& gathered, std::size_t place, std::uint32_t site, std::uint64_t* hits,
-                std::vector<std::uint32_t>& targets) const {
-    for (std::size_t at = 0; at < request_.rays; ++at)
-      hits[at / 64] |= std::uint64_t(!gathered.escaped(place * request_.rays + order_[at])) << at % 64;
-    if (request_.question == RayQuestion::kAnyHit) return;
+  void append_targets(const GatheredRays& gathered, std::size_t place, const LinkBlock& block,
+                      std::vector<std::uint32_t>& targets) const {
     static thread_local std::vector<LinkTargets::End> ends;
     ends.clear();
+    const std::uint32_t site = block.sites[place];
     const Vec3 origin(sites_.positions[site]);
-    for (std::size_t at = 0; at < request_.rays; ++at) {
-      if ((hits[at / 64] >> at % 64 & 1) == 0) continue;
-      const std::size_t k = order_[at];
-      const std::size_t i = place * request_.rays + k;
+    for (std::size_t at = 0; at < round_.rays; ++at) {
+      if (!round_.hit(block, place, at)) continue;
+      const std::size_t k = round_.order[at];
+      const std::size_t i = place * round_.rays + k;
       const Vec3 direction(gathered.index_direction[0][i], gathered.index_direction[1][i],
                            gathered.index_direction[2][i]);
       ends.push_back(
-          {.index = origin + double(gathered.index_distance[i]) * direction, .ray = std::uint32_t(request_.first + k)});
+          {.index = origin + double(gathered.index_distance[i]) * direction, .ray = std::uint32_t(round_.first + k)});
     }
     targets_->append_targets(ends, sites_.isovalues[site], LinkTargets::draws_of(seed_, site), targets);
   }
@@ -102,8 +101,8 @@ class BlockMaker {
   const Sites& sites_;
   std::span<const std::uint32_t> numbers_;
   const LinkTargets* targets_;
-  const RoundRequest& request_;
-  std::span<const std::uint32_t> order_;
+  RayQuestion question_;
+  const LinkRound& round_;
   std::uint64_t seed_;
 };
 
@@ -127,7 +126,7 @@ LinkRound trace_round(const Volume& volume, const Sites& sites, std::span<const 
     some.isovalues.push_back(sites.isovalues[site]);
     some.normals.push_back(sites.normals[site]);
   }
-  const BlockMaker maker(sites, numbers, targets, request, round.order, run.seed);
+  const BlockMaker maker(sites, numbers, targets, request.question, round, run.seed);
   std::mutex adding;
   add(counters, gather(volume, numbers.empty() ? sites : some, settings, run, [&](const GatheredRays& gathered) {
         LinkBlock block = maker.make(gathered);
@@ -135,6 +134,18 @@ LinkRound trace_round(const Volume& volume, const Sites& sites, std::span<const 
         round.blocks.push_back(std::move(block));
       }));
   return round;
+}
+
+void mark_hits(const GatheredRays& gathered, std::size_t place, const LinkRound& round, LinkBlock& block) {
+  std::uint64_t* const hits = &block.hits[place * round.words()];
+  const float* const distance = &gathered.index_distance[place * round.rays];
+  for (std::size_t first = 0; first < round.rays; first += 64) {
+    std::uint64_t word = 0;
+    const std::size_t last = std::min(first + 64, round.rays);
+    for (std::size_t at = first; at < last; ++at)
+      word |= std::uint64_t(distance[round.order[at]] != GatheredRays::kEscaped) << (at - first);
+    hits[first / 64] = word;
+  }
 }
 
 void add_targets(const LinkRound& round, std::size_t stride, std::span<const float> light,

@@ -81,6 +81,9 @@ struct RoundRequest {
                                     const LinkTargets* targets, const RoundRequest& request, const Run& run,
                                     TraceCounters& counters);
 
+/// Marks which rays of the site at a place hit. \pre the block's hits have their size and are 0
+void mark_hits(const GatheredRays& gathered, std::size_t place, const LinkRound& round, LinkBlock& block);
+
 /// The place of a site that is left out.
 inline constexpr std::uint32_t kLeftOut = ~std::uint32_t(0);
 

@@ -33,14 +33,12 @@ std::optional<wide::NetMean::Moments> RayValues::known_moments(const LinkRound& 
 }
 
 void RayValues::see_sky(const LinkRound& round, const LinkBlock& block, std::size_t place,
-                        const wide::Directions& world, Scratch& scratch) const {
+                        const std::array<const float*, 3>& towards, Scratch& scratch) const {
   if (sky_ != nullptr) {
     // All rays, those that hit too, without a branch: it is quicker than to choose.
     const Vec3f up = up_;
     const std::size_t rays = round.rays;
-    const float* const x = world.axis[0].data();
-    const float* const y = world.axis[1].data();
-    const float* const z = world.axis[2].data();
+    const auto [x, y, z] = towards;
     for (std::size_t c = 0; c < e_.channels; ++c) {
       const float ground = sky_->ground[int(c)];
       const float horizon = sky_->horizon[int(c)];
@@ -57,14 +55,15 @@ void RayValues::see_sky(const LinkRound& round, const LinkBlock& block, std::siz
   for (std::size_t at = 0; at < round.rays; ++at) {
     if (round.hit(block, place, at)) continue;
     const std::uint32_t k = round.order[at];
-    const Vec3 radiance = environment_.radiance({world.axis[0][k], world.axis[1][k], world.axis[2][k]});
+    const Vec3 radiance = environment_.radiance({towards[0][k], towards[1][k], towards[2][k]});
     for (std::size_t c = 0; c < e_.channels; ++c) scratch.sky[c][k] = float(radiance[int(c)]);
   }
 }
 
 wide::NetMean::Moments RayValues::moments(const LinkRound& round, const LinkBlock& block, std::size_t place,
-                                          float isovalue, const wide::Directions& world, Scratch& scratch) const {
-  if (uniform_ == nullptr) see_sky(round, block, place, world, scratch);
+                                          float isovalue, const std::array<const float*, 3>& towards,
+                                          Scratch& scratch) const {
+  if (uniform_ == nullptr) see_sky(round, block, place, towards, scratch);
   const Vec3f albedo(scene_.albedo.at(isovalue));
   const Vec3f emission(scene_.emission.at(isovalue));
   const std::uint32_t* targets = block.targets.data() + block.begins[place];

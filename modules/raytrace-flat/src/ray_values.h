@@ -3,6 +3,7 @@
 #include <isolux/core/vec.h>
 #include <isolux/raytrace_flat/scene.h>
 
+#include <array>
 #include <cstddef>
 #include <optional>
 #include <vector>
@@ -34,13 +35,14 @@ class RayValues {
   /// Where it is known without looking at each ray: light without reflections under a uniform environment.
   [[nodiscard]] std::optional<wide::NetMean::Moments> known_moments(const LinkRound& round, const LinkBlock& block,
                                                                     std::size_t place, float isovalue) const;
-  /// `world` holds the directions of the site's rays where they are wanted.
+  /// `towards`: the directions of the site's rays by axis, where they are wanted; world space.
   [[nodiscard]] wide::NetMean::Moments moments(const LinkRound& round, const LinkBlock& block, std::size_t place,
-                                               float isovalue, const wide::Directions& world, Scratch& scratch) const;
+                                               float isovalue, const std::array<const float*, 3>& towards,
+                                               Scratch& scratch) const;
 
  private:
-  void see_sky(const LinkRound& round, const LinkBlock& block, std::size_t place, const wide::Directions& world,
-               Scratch& scratch) const;
+  void see_sky(const LinkRound& round, const LinkBlock& block, std::size_t place,
+               const std::array<const float*, 3>& towards, Scratch& scratch) const;
 
   const Scene& scene_;
   TargetLight e_;

@@ -4,6 +4,7 @@
 #include <utility>
 #include <vector>
 
+#include "sky_light.h"
 #include "trace_request.h"
 #include "wide/net_mean.h"
 #include "wide/path_waves.h"
@@ -44,6 +45,10 @@ class WideTracer final : public FlatTracer {
     samples.channels = is_grey(scene) ? 1 : 3;
     samples.radiance.resize(samples.size() * std::size_t(samples.channels));
     samples.variance.resize(samples.size());
+    if (is_sky_light(scene, settings)) {
+      add(counters, add_sky_light(volume, scene, settings, run, samples));
+      return;
+    }
     const wide::PathWaves waves(volume, scene, settings, options_.limits, run.seed, samples.sites);
     const wide::BlockRequest request{.outer = scene.outer,
                                      .rays_per_site = waves.aimer().rays(),

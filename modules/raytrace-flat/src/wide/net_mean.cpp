@@ -39,11 +39,11 @@ NetMean::Moments NetMean::moments(std::span<const Vec3> values) const {
   return result;
 }
 
-void NetMean::put(std::span<const Vec3> values, std::size_t site, SampleSet& samples) const {
+void NetMean::put(const Moments& moments, std::size_t site, SampleSet& samples) const {
   const auto channels = std::size_t(samples.channels);
   const auto n = double(order_.size());
   const bool is_lit = samples.sites.normals[site] != Vec3f(0.0f);
-  const auto [sum, differences] = is_lit ? moments(values) : Moments{};
+  const auto [sum, differences] = is_lit ? moments : Moments{};
   double variance = 0.0;
   for (std::size_t c = 0; c < channels; ++c) {
     samples.radiance[site * channels + c] = float(sum[int(c)] / n);

@@ -29,7 +29,10 @@ class NetMean {
   /// Writes e and its squared standard error for a site, from one value a ray. The variance is that of neighbouring
   /// strata (successive differences, von Neumann 1941): plain variance / n would count the differences between far
   /// strata, which the net has removed. Rather too large still: see calibrate_variance.
-  void put(std::span<const Vec3> values, std::size_t site, SampleSet& samples) const;
+  void put(std::span<const Vec3> values, std::size_t site, SampleSet& samples) const {
+    put(moments(values), site, samples);
+  }
+  void put(const Moments& moments, std::size_t site, SampleSet& samples) const;
 
  private:
   std::vector<std::uint32_t> order_;  ///< rays along a curve of Morton's

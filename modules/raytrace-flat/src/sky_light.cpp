@@ -1,0 +1,49 @@
+#include "sky_light.h"
+
+#include <isolux/raytrace_flat/gather.h>
+
+#include <array>
+#include <cstddef>
+
+#include "environment.h"
+#include "link_rounds.h"
+#include "ray_values.h"
+#include "wide/net_mean.h"
+
+namespace isolux {
+
+bool is_sky_light(const Scene& scene, const TraceSettings& settings) {
+  if (settings.bounces != 0 || !scene.lights.empty()) return false;
+  const PreparedEnvironment environment(scene.environment);
+  return environment.shines() && !environment.has_samples();
+}
+
+TraceCounters add_sky_light(const Volume& volume, const Scene& scene, const TraceSettings& settings, const Run& run,
+                            SampleSet& samples) {
+  const auto rays = std::size_t(settings.rays);
+  const wide::NetMean mean(wide::SobolPoints(rays), rays);
+  const LinkRound round{.first = 0, .rays = rays, .order = mean.order(), .blocks = {}};
+  const RayValues brought(scene, {.channels = std::size_t(samples.channels)});
+  const GatherSettings request{
+      .rays = settings.rays, .outer = scene.outer, .question = RayQuestion::kAnyHit, .nets = settings.nets};
+  return gather(volume, samples.sites, request, run, [&](const GatheredRays& gathered) {
+    static thread_local LinkBlock block;
+    RayValues::Scratch scratch(rays);
+    block.hits.assign(gathered.sites.size() * round.words(), 0);
+    block.begins.assign(gathered.sites.size() + 1, 0);
+    for (std::size_t place = 0; place < gathered.sites.size(); ++place) {
+      const std::uint32_t site = gathered.sites[place];
+      const float isovalue = samples.sites.isovalues[site];
+      mark_hits(gathered, place, round, block);
+      auto moments = brought.known_moments(round, block, place, isovalue);
+      if (!moments) {
+        std::array<const float*, 3> towards{};
+        for (std::size_t a = 0; a < 3; ++a) towards[a] = &gathered.direction[a][place * rays];
+        moments = brought.moments(round, block, place, isovalue, towards, scratch);
+      }
+      mean.put(*moments, site, samples);
+    }
+  });
+}
+
+}  // namespace isolux

@@ -1,0 +1,19 @@
+#pragma once
+
+#include <isolux/core/run.h>
+#include <isolux/core/sample_set.h>
+#include <isolux/core/volume.h>
+#include <isolux/raytrace_flat/flat_tracer.h>
+
+namespace isolux {
+
+/// Whether e is all a matter of which rays escape and where to: no reflections, no light sources, no directions that
+/// are worth drawing for the environment's sake, and an environment that shines.
+[[nodiscard]] bool is_sky_light(const Scene& scene, const TraceSettings& settings);
+
+/// Such e of samples.sites and its variance, in samples.channels channels: one question a ray, and nothing kept of it.
+/// \pre is_sky_light(); radiance and variance have their sizes
+[[nodiscard]] TraceCounters add_sky_light(const Volume& volume, const Scene& scene, const TraceSettings& settings,
+                                          const Run& run, SampleSet& samples);
+
+}  // namespace isolux
