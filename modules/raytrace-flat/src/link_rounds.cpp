@@ -85,15 +85,15 @@ class BlockMaker {
     static thread_local std::vector<LinkTargets::End> ends;
     ends.clear();
     const std::uint32_t site = block.sites[place];
-    const Vec3 origin(sites_.positions[site]);
+    const Vec3f origin(sites_.positions[site]);
     for (std::size_t at = 0; at < round_.rays; ++at) {
       if (!round_.hit(block, place, at)) continue;
       const std::size_t k = round_.order[at];
       const std::size_t i = place * round_.rays + k;
-      const Vec3 direction(gathered.index_direction[0][i], gathered.index_direction[1][i],
-                           gathered.index_direction[2][i]);
+      const Vec3f direction(gathered.index_direction[0][i], gathered.index_direction[1][i],
+                            gathered.index_direction[2][i]);
       ends.push_back(
-          {.index = origin + double(gathered.index_distance[i]) * direction, .ray = std::uint32_t(round_.first + k)});
+          {.index = origin + gathered.index_distance[i] * direction, .ray = std::uint32_t(round_.first + k)});
     }
     targets_->append_targets(ends, sites_.isovalues[site], LinkTargets::draws_of(seed_, site), targets);
   }

@@ -1,7 +1,6 @@
 #include "link_solver.h"
 
 #include <isolux/core/error.h>
-#include <isolux/core/field.h>
 #include <isolux/core/parallel.h>
 #include <isolux/core/random.h>
 
@@ -127,20 +126,8 @@ void LightLinks::Solver::measure_texels() {
   double sum = 0.0;
   for (const float isovalue : seen_.sites.isovalues) sum += double(isovalue);
   middle_ = float(sum / double(std::max<std::size_t>(seen_.size(), 1)));
-  const TrilinearField field(links_.volume_);
-  const Lattice& texels = links_.rounds_->targets->texels();
-  const IndexToWorld to_volume = index_to_index(texels, links_.volume_.lattice());
-  const auto nx = std::size_t(texels.size.x);
-  const auto ny = std::size_t(texels.size.y);
-  texels_.resize(texels.count());
-  parallel_blocks(texels_.size(), kSitesABlock, run_, "", [&](const Block& block) {
-    for (std::size_t t = block.begin; t < block.end; ++t) {
-      const std::size_t j = t / nx % ny;
-      const std::size_t k = t / (nx * ny);
-      const Vec3 centre = to_volume.world({double(t % nx), double(j), double(k)});
-      texels_[t] = float(field.value(centre) - double(middle_));
-    }
-  });
+  texels_ = isovalues_at(links_.volume_, links_.rounds_->targets->texels(), run_);
+  for (float& isovalue : texels_) isovalue -= middle_;
 }
 
 }  // namespace isolux

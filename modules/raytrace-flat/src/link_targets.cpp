@@ -12,16 +12,16 @@
 #include <cmath>
 #include <glm/common.hpp>
 
-#include "wide/draw_corners.h"
-
 namespace isolux {
 namespace {
 
 /// Float positions of sites at texel centres are off by less than this up to some 10,000 voxels an axis.
 constexpr double kTolerance = 0.01;
+constexpr std::size_t kEndsAPart = wide::CornerDraws::kMost;
 
-/// Isovalues at the centres of the texels.
-std::vector<float> isovalues_of(const Volume& volume, const Lattice& texels, const Run& run) {
+}  // namespace
+
+std::vector<float> isovalues_at(const Volume& volume, const Lattice& texels, const Run& run) {
   const TrilinearField field(volume);
   const IndexToWorld to_volume = index_to_index(texels, volume.lattice());
   const auto nx = std::size_t(texels.size.x);
@@ -37,18 +37,21 @@ std::vector<float> isovalues_of(const Volume& volume, const Lattice& texels, con
   return isovalues;
 }
 
-}  // namespace
-
 LinkTargets::LinkTargets(const Volume& volume, const Lattice& texels, Weights weights, const Run& run)
     : texels_(texels), to_texel_(index_to_index(volume.lattice(), texels)) {
   if (texels.count() >= kNoLabel)
     throw InvalidInput(fmt::format("{} texels; light links take at most 2^32 - 2", texels.count()));
   for (int q = 0; q < 8; ++q) {
     const Index3 upper = glm::min(Index3(q & 1, q >> 1 & 1, q >> 2), texels.size - 1);
-    corner_[std::size_t(q)] = texels.offset(upper.x, upper.y, upper.z);
+    corner_[std::size_t(q)] = std::uint32_t(texels.offset(upper.x, upper.y, upper.z));
+  }
+  for (int a = 0; a < 3; ++a) {
+    for (int b = 0; b < 3; ++b) points_.axes[a][b] = float(to_texel_.axes[b][a]);
+    points_.origin[a] = float(to_texel_.origin[a]);
+    points_.size[a] = std::uint32_t(texels.size[a]);
   }
   if (weights == Weights::kTrilinear) return;
-  own_isovalues_ = isovalues_of(volume, texels, run);
+  own_isovalues_ = isovalues_at(volume, texels, run);
   isovalues_ = own_isovalues_;
 }
 
@@ -101,59 +104,47 @@ LinkTargets::Draws LinkTargets::draws_of(std::uint64_t seed, std::size_t site) {
   return {{std::uint32_t(a), std::uint32_t(a >> 32), std::uint32_t(b)}};
 }
 
-LinkTargets::Place LinkTargets::place(const Vec3& index) const {
-  const Vec3 at = to_texel_.world(index);
-  Place place{};
-  int low[3];
-  for (int a = 0; a < 3; ++a) {
-    const double x = std::clamp(at[a], 0.0, double(texels_.size[a] - 1));
-    low[a] = std::min(int(x), std::max(texels_.size[a] - 2, 0));
-    place.part[std::size_t(a)] = float(x - double(low[a]));
-  }
-  place.texel = std::uint32_t(texels_.offset(low[0], low[1], low[2]));
-  return place;
-}
-
 void LinkTargets::append_targets(std::span<const End> ends, float isovalue, const Draws& draws,
                                  std::vector<std::uint32_t>& targets) const {
   // All ends are asked for before the first is looked at: they lie far apart in memory.
-  static thread_local std::vector<Place> places;
-  places.clear();
-  for (const End& end : ends) {
-    places.push_back(place(end.index));
-    if (isovalues_.empty()) continue;
-    for (std::size_t q = 0; q < 8; q += 2) hwy::Prefetch(&isovalues_[places.back().texel + corner_[q]]);
-  }
+  static thread_local std::vector<wide::CornerDraws> parts;
+  const auto count_of = [&](std::size_t p) { return std::min(kEndsAPart, ends.size() - p * kEndsAPart); };
+  parts.resize((ends.size() + kEndsAPart - 1) / kEndsAPart);
+  for (std::size_t p = 0; p < parts.size(); ++p) ask_for(ends.subspan(p * kEndsAPart, count_of(p)), draws, parts[p]);
   const std::size_t before = targets.size();
   targets.resize(before + ends.size());
-  for (std::size_t i = 0; i < ends.size(); i += wide::CornerDraws::kMost) {
-    const std::size_t count = std::min(wide::CornerDraws::kMost, ends.size() - i);
-    draw_texels(ends.subspan(i, count), {&places[i], count}, isovalue, draws, &targets[before + i]);
-  }
+  for (std::size_t p = 0; p < parts.size(); ++p)
+    draw_texels(parts[p], count_of(p), isovalue, &targets[before + p * kEndsAPart]);
   if (site_of_texel_.empty()) return;
   for (std::size_t i = before; i < targets.size(); ++i) targets[i] = site_of_texel_[targets[i]];
 }
 
-void LinkTargets::draw_texels(std::span<const End> ends, std::span<const Place> places, float isovalue,
-                              const Draws& draws, std::uint32_t* texels) const {
+void LinkTargets::ask_for(std::span<const End> ends, const Draws& draws, wide::CornerDraws& part) const {
   // Powers of 1 / 1.2207, the root of x^4 = x + 1, as fractions of 2^32: a lattice of low discrepancy in three
   // dimensions (Roberts 2018), so that rays of a site that end together draw different texels.
   constexpr std::uint32_t kStep[3] = {0xD1B54A33u, 0xABC98388u, 0x8CB92BA7u};
-  wide::CornerDraws drawn{};
-  const bool by_isovalue = !isovalues_.empty();
-  for (std::size_t lane = 0; lane < places.size(); ++lane) {
-    for (std::size_t a = 0; a < 3; ++a) {
-      drawn.part[a][lane] = places[lane].part[a];
+  for (int a = 0; a < 3; ++a) {
+    for (std::size_t lane = 0; lane < ends.size(); ++lane) {
+      part.index[a][lane] = ends[lane].index[a];
       // 24 bits, so that it stays below 1.
-      drawn.uniform[a][lane] = float(std::int32_t((draws.start[a] + ends[lane].ray * kStep[a]) >> 8)) * 0x1p-24f;
+      part.uniform[a][lane] = float(std::int32_t((draws.start[a] + ends[lane].ray * kStep[a]) >> 8)) * 0x1p-24f;
     }
-    if (!by_isovalue) continue;
-    const float* const lowest = &isovalues_[places[lane].texel];
-    for (std::size_t q = 0; q < 8; ++q) drawn.away[q][lane] = lowest[corner_[q]] - isovalue;
   }
-  wide::draw_corners(drawn, places.size(), by_isovalue);
-  for (std::size_t lane = 0; lane < places.size(); ++lane) {
-    texels[lane] = std::uint32_t(places[lane].texel + corner_[drawn.corner[lane]]);
+  wide::find_corners(part, ends.size(), points_);
+  if (isovalues_.empty()) return;
+  for (std::size_t lane = 0; lane < ends.size(); ++lane)
+    for (std::size_t q = 0; q < 8; q += 2) hwy::Prefetch(&isovalues_[part.lowest[lane] + corner_[q]]);
+}
+
+void LinkTargets::draw_texels(wide::CornerDraws& part, std::size_t count, float isovalue, std::uint32_t* texels) const {
+  const bool by_isovalue = !isovalues_.empty();
+  for (std::size_t lane = 0; by_isovalue && lane < count; ++lane) {
+    const float* const lowest = &isovalues_[part.lowest[lane]];
+    for (std::size_t q = 0; q < 8; ++q) part.away[q][lane] = lowest[corner_[q]] - isovalue;
+  }
+  wide::draw_corners(part, count, by_isovalue);
+  for (std::size_t lane = 0; lane < count; ++lane) {
+    texels[lane] = part.lowest[lane] + corner_[part.corner[lane]];
     if (!site_of_texel_.empty()) hwy::Prefetch(&site_of_texel_[texels[lane]]);
   }
 }

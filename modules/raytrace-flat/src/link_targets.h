@@ -11,7 +11,12 @@
 #include <span>
 #include <vector>
 
+#include "wide/draw_corners.h"
+
 namespace isolux {
+
+/// Isovalues at the centres of texels. \throw Cancelled
+[[nodiscard]] std::vector<float> isovalues_at(const Volume& volume, const Lattice& texels, const Run& run);
 
 /// Whose light the end of a ray reads: one of the eight texels around it, drawn by a weight, so that the mean over the
 /// draws is an interpolant of them. Where the sites sit at the texels the target is a site (an unlit texel stands for
@@ -45,7 +50,7 @@ class LinkTargets {
 
   /// Where a ray ends, in the volume's index space.
   struct End {
-    Vec3 index;
+    Vec3f index;
     std::uint32_t ray;  ///< its number in the site's sequence
   };
   /// Appends the targets of rays of one site, in their order.
@@ -53,15 +58,9 @@ class LinkTargets {
                       std::vector<std::uint32_t>& targets) const;
 
  private:
-  /// Between eight texels: the lowest of them, and the part of the way to the upper ones.
-  struct Place {
-    std::uint32_t texel;
-    std::array<float, 3> part;
-  };
-  [[nodiscard]] Place place(const Vec3& index) const;
-  /// The texels of some ends, no more than there are lanes.
-  void draw_texels(std::span<const End> ends, std::span<const Place> places, float isovalue, const Draws& draws,
-                   std::uint32_t* texels) const;
+  /// Places of some ends and the numbers of their draws, no more than a part takes; what is read there is asked for.
+  void ask_for(std::span<const End> ends, const Draws& draws, wide::CornerDraws& part) const;
+  void draw_texels(wide::CornerDraws& part, std::size_t count, float isovalue, std::uint32_t* texels) const;
   /// The texel whose centre the place is within rounding; kNoLabel if there is none.
   [[nodiscard]] std::uint32_t texel_at(const Vec3f& index) const;
   /// False if the sites do not sit at the texels, one each at most.
@@ -69,7 +68,8 @@ class LinkTargets {
 
   Lattice texels_;
   IndexToWorld to_texel_;
-  std::array<std::size_t, 8> corner_{};  ///< of eight texels, less the lowest; bits: 1 is x, 2 is y, 4 is z
+  wide::PointGrid points_{};               ///< the texels, from the volume's index space
+  std::array<std::uint32_t, 8> corner_{};  ///< of eight texels, less the lowest; bits: 1 is x, 2 is y, 4 is z
   bool are_sites_ = false;
   std::vector<std::uint32_t> site_of_texel_;  ///< empty if a site's number is its texel's, or the sites sit elsewhere
   std::vector<float> own_isovalues_;

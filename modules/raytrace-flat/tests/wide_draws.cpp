@@ -104,7 +104,7 @@ double mean_of_draws(const LinkTargets& targets, const Vec3& index, float isoval
   double sum = 0.0;
   for (int d = 0; d < kDraws; ++d) {
     std::vector<std::uint32_t> target;
-    targets.append_targets(std::array{LinkTargets::End{.index = index, .ray = 5}}, isovalue,
+    targets.append_targets(std::array{LinkTargets::End{.index = Vec3f(index), .ray = 5}}, isovalue,
                            LinkTargets::draws_of(1, std::size_t(d)), target);
     sum += double(light[target.front()]);
   }
@@ -156,7 +156,7 @@ TEST(LinkTargets, ReadTheNearestLitTexelWhereNoneIs) {
   const LinkTargets targets(volume, one, cell_lattice(volume.lattice()), isolux::Run{});
   ASSERT_TRUE(targets.are_sites());
   std::vector<LinkTargets::End> ends;
-  for (const Vec3f& place : all.positions) ends.push_back({.index = Vec3(place), .ray = std::uint32_t(ends.size())});
+  for (const Vec3f& place : all.positions) ends.push_back({.index = place, .ray = std::uint32_t(ends.size())});
   std::vector<std::uint32_t> found;
   targets.append_targets(ends, 0.5f, {}, found);
   EXPECT_EQ(found, std::vector<std::uint32_t>(ends.size(), 0u));

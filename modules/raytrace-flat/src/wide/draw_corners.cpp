@@ -74,6 +74,31 @@ HWY_INLINE void choose(CornerDraws& draws, std::size_t lane, CornerFloats (&weig
   hn::StoreU(corner, u, draws.corner + lane);
 }
 
+void find(CornerDraws& draws, std::size_t count, const PointGrid& grid) {
+  const CornerTag f;
+  const hn::RebindToSigned<CornerTag> i;
+  const hn::RebindToUnsigned<CornerTag> u;
+  for (std::size_t lane = 0; lane < count; lane += hn::Lanes(f)) {
+    CornerFloats index[3];
+    for (int a = 0; a < 3; ++a) index[a] = hn::LoadU(f, draws.index[a] + lane);
+    auto lowest = hn::Zero(u);
+    std::uint32_t stride = 1;
+    for (int a = 0; a < 3; ++a) {
+      const float* m = grid.axes[a];
+      CornerFloats at = hn::MulAdd(hn::Set(f, m[0]), index[0], hn::Set(f, grid.origin[a]));
+      at = hn::MulAdd(hn::Set(f, m[1]), index[1], at);
+      at = hn::MulAdd(hn::Set(f, m[2]), index[2], at);
+      at = hn::Max(hn::Zero(f), hn::Min(at, hn::Set(f, float(grid.size[a] - 1))));
+      const auto last = hn::Set(i, std::int32_t(grid.size[a] > 1 ? grid.size[a] - 2 : 0));
+      const auto low = hn::Min(hn::ConvertTo(i, at), last);
+      hn::StoreU(hn::Sub(at, hn::ConvertTo(f, low)), f, draws.part[a] + lane);
+      lowest = hn::Add(lowest, hn::Mul(hn::BitCast(u, low), hn::Set(u, stride)));
+      stride *= grid.size[a];
+    }
+    hn::StoreU(lowest, u, draws.lowest + lane);
+  }
+}
+
 void draw(CornerDraws& draws, std::size_t count, bool by_isovalue) {
   for (std::size_t lane = 0; lane < count; lane += hn::Lanes(CornerTag())) {
     CornerFloats weights[8];
@@ -90,7 +115,12 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace isolux::wide {
 
+HWY_EXPORT(find);
 HWY_EXPORT(draw);
+
+void find_corners(CornerDraws& draws, std::size_t count, const PointGrid& grid) {
+  HWY_DYNAMIC_DISPATCH(find)(draws, count, grid);
+}
 
 void draw_corners(CornerDraws& draws, std::size_t count, bool by_isovalue) {
   HWY_DYNAMIC_DISPATCH(draw)(draws, count, by_isovalue);
