@@ -1,0 +1,205 @@
+// Pixels against the look-up on the processor.
+#include "gl/surface_renderer.h"
+
+#include <gtest/gtest.h>
+#include <isolux/render/image.h>
+#include <isolux/resample/light_reader.h>
+#include <isolux/volume_io/read.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdlib>
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+#include <glm/mat4x4.hpp>
+#include <glm/matrix.hpp>
+#include <glm/vec4.hpp>
+#include <limits>
+
+#include "camera/framing.h"
+#include "egl_context.h"
+#include "gl_target.h"
+#include "model/surface.h"
+
+namespace isolux::viewer {
+namespace {
+
+/// A ball far from the world's origin, stretched and turned, so that a wrong frame shows.
+Volume far_ball() {
+  Volume volume = read_volume("gen:sphere:32");
+  Lattice lattice = volume.lattice();
+  lattice.frame = {.origin = {4000.0, -700.0, 90.0}, .axes = Mat3({0.6, 0.8, 0.0}, {-1.6, 1.2, 0.0}, {0.0, 0.0, 3.0})};
+  volume.values =
+      Grid<float>(lattice, std::vector<float>(volume.values.values().begin(), volume.values.values().end()));
+  return volume;
+}
+
+IlluminationGrid varied_light(const Lattice& texels, int channels) {
+  IlluminationGrid light(texels, channels);
+  std::size_t at = 0;
+  for (int k = 0; k < texels.size.z; ++k)
+    for (int j = 0; j < texels.size.y; ++j)
+      for (int i = 0; i < texels.size.x; ++i)
+        for (int c = 0; c < channels; ++c)
+          light.values[at++] = 0.5f + 0.4f * float(std::sin(0.5 * i + c) * std::cos(0.4 * j) * std::sin(0.3 * k + c));
+  return light;
+}
+
+/// The light with slopes and a near field that change it by some tenths.
+IlluminationGrid detailed(IlluminationGrid light) {
+  for (std::size_t i = 0; i < light.values.size(); ++i)
+    light.detail.slopes.push_back(0.8f * float(std::cos(0.01 * double(i))));
+  light.detail.near_field = {{.step = 1.0f, .mean = 0.9f, .weight = {0.3f, 0.2f, 0.1f}},
+                             {.step = -4.0f, .mean = -0.5f, .weight = {-0.1f, 0.2f, 0.3f}}};
+  light.detail.ceiling = 0.95f;
+  return light;
+}
+
+/// The light that a pixel of a mesh should show: that of LightReader, but for the near field, which is LightReader's at
+/// the vertices and linear between them.
+class ExpectedLight {
+ public:
+  ExpectedLight(const Volume& volume, const IlluminationGrid& light, const IndexedMesh& mesh, float isovalue)
+      : frame_(volume.lattice().frame),
+        mesh_(mesh),
+        isovalue_(double(isovalue)),
+        ceiling_(light.detail.near_field.empty() ? kHigh : light.detail.ceiling),
+        texels_(volume, unclamped(light, true)) {
+    if (light.detail.near_field.empty()) return;
+    const LightReader whole(volume, unclamped(light, false));
+    for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
+      const Vec3 index = frame_.index(position(v));
+      near_field_.push_back(whole.at_index(index, isovalue_) - texels_.at_index(index, isovalue_));
+    }
+  }
+
+  /// At a point of the mesh, world space.
+  [[nodiscard]] Vec3f at(const Vec3& world) const {
+    const Vec3f e = texels_.at_index(frame_.index(world), isovalue_) - kLift;
+    return glm::clamp(near_field_.empty() ? e : e + near_field_at(world), Vec3f(0.0f), Vec3f(ceiling_));
+  }
+
+ private:
+  static constexpr float kLift = 4.0f;  // so that nothing is clamped at 0
+  static constexpr float kHigh = 100.0f;
+
+  static IlluminationGrid unclamped(IlluminationGrid light, bool texels_alone) {
+    for (float& v : light.values) v += kLift;
+    light.detail.ceiling = kHigh;
+    if (texels_alone) light.detail.near_field.clear();
+    return light;
+  }
+  [[nodiscard]] Vec3 position(std::size_t v) const { return Vec3(mesh_.positions[v]); }
+
+  /// Of the triangle that the point lies on, which is the one least far off among those that it lies above.
+  [[nodiscard]] Vec3f near_field_at(const Vec3& world) const {
+    Vec3f found(0.0f);
+    double least = std::numeric_limits<double>::infinity();
+    for (const auto& triangle : mesh_.triangles) {
+      const Vec3 a = position(triangle[0]);
+      const Vec3 b = position(triangle[1]) - a;
+      const Vec3 c = position(triangle[2]) - a;
+      const Vec3 p = world - a;
+      const Vec3 n = glm::cross(b, c);
+      const double square = glm::dot(n, n);
+      const double u = glm::dot(glm::cross(p, c), n) / square;
+      const double v = glm::dot(glm::cross(b, p), n) / square;
+      const double off = std::fabs(glm::dot(p, n)) / std::sqrt(square);
+      if (std::min({u, v, 1.0 - u - v}) < -0.01 || off >= least) continue;
+      least = off;
+      found = float(1.0 - u - v) * near_field_[triangle[0]] + float(u) * near_field_[triangle[1]] +
+              float(v) * near_field_[triangle[2]];
+    }
+    return found;
+  }
+
+  IndexToWorld frame_;
+  const IndexedMesh& mesh_;
+  double isovalue_;
+  float ceiling_;
+  LightReader texels_;
+  std::vector<Vec3f> near_field_;  ///< at the vertices
+};
+
+struct LightKind {
+  bool at_voxels = false;
+  int channels = 1;
+  bool detail = false;
+  bool bricks = false;
+  bool own = false;  ///< TexelLight::kOwn
+};
+
+class LitPixels : public testing::TestWithParam<LightKind> {};
+
+// What the graphics card shows at a pixel is the light that the processor looks up at the point under it.
+TEST_P(LitPixels, AgreeWithTheLookUpOnTheProcessor) {
+  const test::EglContext context;
+  if (!context) GTEST_SKIP() << context.why();
+  const auto [at_voxels, channels, detail, bricks, own] = GetParam();
+  const auto volume = std::make_shared<const Volume>(far_ball());
+  const Lattice& lattice = volume->lattice();
+  const Index3 cells = bricks ? Index3(62, 53, 49) : Index3(17, 31, 9);
+  IlluminationGrid light = varied_light(at_voxels ? voxel_lattice(lattice) : cell_lattice(lattice, cells), channels);
+  if (detail) light = detailed(std::move(light));
+  if (bricks) light.detail.isovalues = ValueRange{.low = -0.405f, .high = -0.395f};
+  constexpr float kIsovalue = -0.4f;
+  const Surface surface = SurfaceMaker(volume, extractors(), {}).make({.isovalue = kIsovalue}, {}, {});
+  // Texels' own light shows as what a reader makes of it.
+  if (own) {
+    light.detail.texel_light = TexelLight::kOwn;
+    light.detail.slopes.clear();
+  }
+  const ExpectedLight expected(*volume, own ? LightReader(*volume, light).offsets() : light, surface.mesh, kIsovalue);
+
+  SurfaceRenderer renderer(volume);
+  renderer.set_surface(surface.mesh, kIsovalue);
+  renderer.set_light(light);
+  EXPECT_EQ(renderer.light_memory().light < renderer.light_memory().dense, bricks);
+  SurfaceView view;
+  view.camera = orbit_camera(lattice, 30.0, 20.0, 1.0);
+  view.lighting = Lighting::kGlobal;
+  view.albedo = {0.9f, 0.8f, 0.6f};
+  view.exposure = 1.1f;
+  Target target;
+  renderer.draw(view);
+  target.read();
+
+  const Vec3 centre(Vec3f(box_middle(lattice)));
+  const glm::dmat4 from_clip = glm::inverse(clip_from_centred(view.camera, centre, box_radius(lattice), 1.0));
+  int compared = 0;
+  for (int y = 0; y < kSize; ++y) {
+    for (int x = 0; x < kSize; ++x) {
+      const std::size_t at = std::size_t(y) * kSize + std::size_t(x);
+      if (target.colours[at][3] == 0) continue;
+      const glm::dvec4 clip(2.0 * (x + 0.5) / kSize - 1.0, 2.0 * (y + 0.5) / kSize - 1.0,
+                            2.0 * double(target.depths[at]) - 1.0, 1.0);
+      const glm::dvec4 centred = from_clip * clip;
+      const Vec3 world = centre + Vec3(centred) / centred.w;
+      const Vec3f shown = view.exposure * view.albedo * expected.at(world);
+      for (int c = 0; c < 3; ++c) {
+        // One code for the texture's float16 and 8-bit filter weights, one for rounding.
+        ASSERT_LE(std::abs(int(target.colours[at][std::size_t(c)]) - int(srgb_code(shown[c]))), 2)
+            << "pixel " << x << "," << y << " channel " << c;
+      }
+      ++compared;
+    }
+  }
+  EXPECT_GT(compared, kSize * kSize / 20);
+}
+
+INSTANTIATE_TEST_SUITE_P(BothLattices, LitPixels,
+                         testing::Values(LightKind{false, 1, false}, LightKind{false, 3, false},
+                                         LightKind{true, 1, false}, LightKind{true, 3, false},
+                                         LightKind{false, 1, true}, LightKind{false, 3, true}, LightKind{true, 3, true},
+                                         LightKind{false, 1, false, true}, LightKind{false, 1, true, true},
+                                         LightKind{false, 3, true, true}, LightKind{false, 3, false, true},
+                                         LightKind{false, 1, true, false, true}, LightKind{false, 3, true, true, true}),
+                         [](const auto& tested) {
+                           return std::string(tested.param.at_voxels ? "voxels_" : "cells_") +
+                                  std::to_string(tested.param.channels) + (tested.param.detail ? "_detailed" : "") +
+                                  (tested.param.bricks ? "_bricks" : "") + (tested.param.own ? "_own" : "");
+                         });
+
+}  // namespace
+}  // namespace isolux::viewer
