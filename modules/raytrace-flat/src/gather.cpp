@@ -25,7 +25,7 @@ TraceCounters gather(const Volume& volume, const Sites& sites, const GatherSetti
   const wide::Aimer aimer(volume.lattice().frame, run.seed, std::size_t(settings.rays), std::size_t(settings.first_ray),
                           settings.nets, sites);
   const wide::BlockRequest request{
-      .outer = settings.outer, .rays_per_site = aimer.rays(), .sites_per_block = aimer.sites_per_batch()};
+      .outer = settings.outer, .rays_per_site = aimer.rays(), .sites_per_block = wide::sites_per_batch(aimer.rays())};
   const auto question = settings.question == RayQuestion::kAnyHit ? wide::Question::kAnyHit : wide::Question::kFirstHit;
   TraceCounters total;
   std::mutex adding;

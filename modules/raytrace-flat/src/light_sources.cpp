@@ -50,16 +50,17 @@ struct SphericalTriangle {
 
 }  // namespace
 
+SunDisc sun_disc(const SunLight& sun) {
+  const double radius = double(sun.angular_diameter_deg) * std::numbers::pi / 360.0;
+  const double half = std::sin(0.5 * radius);
+  const double one_minus_cosine = 2.0 * half * half;
+  // Irradiance at normal incidence = radiance * pi sin^2(radius); weight = radiance * 2 pi (1 - cos(radius)).
+  return {.one_minus_cosine = one_minus_cosine, .weight = 2.0 / (2.0 - one_minus_cosine) * Vec3(sun.irradiance)};
+}
+
 PreparedLight::PreparedLight(const Light& light) : shape_(Cone{}) {
   if (const auto* sun = std::get_if<SunLight>(&light)) {
-    const double radius = double(sun->angular_diameter_deg) * std::numbers::pi / 360.0;
-    const double half = std::sin(0.5 * radius);
-    const double one_minus_cosine = 2.0 * half * half;
-    // Irradiance at normal incidence = radiance * pi sin^2(radius); weight = radiance * 2 pi (1 - cos(radius)).
-    const double weight = 2.0 / (2.0 - one_minus_cosine);
-    shape_ = Cone{.frame = frame_about(glm::normalize(Vec3(sun->direction))),
-                  .one_minus_cosine = one_minus_cosine,
-                  .weight = weight * Vec3(sun->irradiance)};
+    shape_ = Cone{.frame = frame_about(glm::normalize(Vec3(sun->direction))), .disc = sun_disc(*sun)};
   } else if (const auto* rectangle = std::get_if<RectangleLight>(&light)) {
     const Vec3 cross = glm::cross(Vec3(rectangle->u), Vec3(rectangle->v));
     const double length = glm::length(cross);
@@ -79,9 +80,9 @@ std::optional<LightSample> PreparedLight::sample(const Vec3& from, double u, dou
 }
 
 std::optional<LightSample> PreparedLight::sample_shape(const Cone& sun, const Vec3& /*from*/, double u, double v) {
-  return LightSample{.towards = sun.frame.world(cone_direction(u, v, sun.one_minus_cosine)),
+  return LightSample{.towards = sun.frame.world(cone_direction(u, v, sun.disc.one_minus_cosine)),
                      .distance = std::numeric_limits<double>::infinity(),
-                     .weight = sun.weight};
+                     .weight = sun.disc.weight};
 }
 
 std::optional<LightSample> PreparedLight::sample_shape(const Parallelogram& light, const Vec3& from, double u,

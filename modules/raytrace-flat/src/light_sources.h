@@ -16,6 +16,13 @@ struct LightSample {
   Vec3 weight{0.0};       ///< radiance / density per solid angle: its mean over draws is the integral of the radiance
 };
 
+/// The disc that a sun fills in the sky.
+struct SunDisc {
+  double one_minus_cosine;  ///< of the angle between its middle and its edge
+  Vec3 weight;              ///< LightSample::weight of directions that are even in it
+};
+[[nodiscard]] SunDisc sun_disc(const SunLight& sun);
+
 /// A light source made ready for many draws.
 class PreparedLight {
  public:
@@ -30,8 +37,7 @@ class PreparedLight {
  private:
   struct Cone {
     Frame frame;
-    double one_minus_cosine;
-    Vec3 weight;
+    SunDisc disc;
   };
   struct Parallelogram {
     Vec3 center;

@@ -2,6 +2,7 @@
 
 #include <isolux/raytrace_flat/gather.h>
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 
@@ -12,16 +13,28 @@
 
 namespace isolux {
 
-bool is_sky_light(const Scene& scene, const TraceSettings& settings) {
-  if (settings.bounces != 0 || !scene.lights.empty()) return false;
-  const PreparedEnvironment environment(scene.environment);
-  return environment.shines() && !environment.has_samples();
+namespace {
+
+bool is_dark(const Scene& scene) {
+  return !PreparedEnvironment(scene.environment).shines() &&
+         std::all_of(scene.emission.keys.begin(), scene.emission.keys.end(),
+                     [](const IsovalueColour::Key& key) { return key.colour == Vec3f(0.0f); });
+}
+
+}  // namespace
+
+bool is_sky_light(const Scene& scene) {
+  return scene.lights.empty() && !PreparedEnvironment(scene.environment).has_samples();
 }
 
 TraceCounters add_sky_light(const Volume& volume, const Scene& scene, const TraceSettings& settings, const Run& run,
                             SampleSet& samples) {
   const auto rays = std::size_t(settings.rays);
   const wide::NetMean mean(wide::SobolPoints(rays), rays);
+  if (is_dark(scene)) {
+    for (std::size_t site = 0; site < samples.size(); ++site) mean.put(wide::NetMean::Moments{}, site, samples);
+    return {};
+  }
   const LinkRound round{.first = 0, .rays = rays, .order = mean.order(), .blocks = {}};
   const RayValues brought(scene, {.channels = std::size_t(samples.channels)});
   const GatherSettings request{

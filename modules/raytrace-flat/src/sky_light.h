@@ -7,12 +7,12 @@
 
 namespace isolux {
 
-/// Whether e is all a matter of which rays escape and where to: no reflections, no light sources, no directions that
-/// are worth drawing for the environment's sake, and an environment that shines.
-[[nodiscard]] bool is_sky_light(const Scene& scene, const TraceSettings& settings);
+/// Whether e without reflections is all a matter of which rays escape and where to: no light sources, and no directions
+/// that are worth drawing for the environment's sake.
+[[nodiscard]] bool is_sky_light(const Scene& scene);
 
-/// Such e of samples.sites and its variance, in samples.channels channels: one question a ray, and nothing kept of it.
-/// \pre is_sky_light(); radiance and variance have their sizes
+/// Such e of samples.sites and its variance, in samples.channels channels: one question a ray, and nothing kept of it;
+/// no question where there is no light at all. \pre is_sky_light(); radiance and variance have their sizes
 [[nodiscard]] TraceCounters add_sky_light(const Volume& volume, const Scene& scene, const TraceSettings& settings,
                                           const Run& run, SampleSet& samples);
 

@@ -63,6 +63,36 @@ TEST(WideTracer, AgreesWithScalarUnderColouredLamps) {
   expect_same_light(gyroid(32), scene, 64, 2);
 }
 
+TEST(WideTracer, AgreesWithScalarUnderSunsWithoutBounces) {
+  // A wide sun has a penumbra, and sites that face a part of it; the other one is as ours.
+  Scene scene = darkness(0.5f);
+  scene.lights.emplace_back(
+      SunLight{.direction = {1.0f, 2.0f, 3.0f}, .irradiance = {1.0f, 0.5f, 0.2f}, .angular_diameter_deg = 40.0f});
+  scene.lights.emplace_back(SunLight{.direction = {-1.0f, 0.0f, 1.0f}, .irradiance = {0.2f, 0.5f, 0.4f}});
+  expect_same_light(gyroid(32), scene, 64, 0);
+  scene.environment = half_sky({0.3f, 0.2f, 1.0f});
+  scene.emission = constant(0.2f);
+  expect_same_light(gyroid(32), scene, 64, 0);
+  scene.lights.emplace_back(SphereLight{.center = {0.5f, 0.5f, 1.2f}, .radius = 0.1f, .radiance = Vec3f(3.0f)});
+  scene.outer = OuterSide::kHigher;
+  expect_same_light(gyroid(32), scene, 64, 0);
+}
+
+TEST(WideTracer, AsksNothingWhereASunIsBelowTheHorizon) {
+  const Volume volume = sphere(32);
+  Scene scene = darkness(0.5f);
+  scene.lights.emplace_back(SunLight{.direction = {0.0f, 0.0f, 1.0f}});
+  const auto sites = [&](double sign) {
+    return sites_at(volume, {{0.5, 0.5, 0.5 + 0.3 * sign}, {0.6, 0.5, 0.5 + 0.2 * sign}}, OuterSide::kLower);
+  };
+  const TraceResult below = trace_with("wide", volume, scene, sites(-1.0), {.rays = 16, .bounces = 0});
+  EXPECT_EQ(below.counters.rays, 0u);
+  for (const float e : below.samples.radiance) EXPECT_EQ(e, 0.0f);
+  const TraceResult above = trace_with("wide", volume, scene, sites(1.0), {.rays = 16, .bounces = 0});
+  // Two sites, each twice (see the variances of e).
+  EXPECT_EQ(above.counters.rays, 64u);
+}
+
 TEST(WideTracer, AgreesWithScalarUnderAnImageOfTheSky) {
   Scene scene = furnace(0.5f);
   ImageEnvironment image{.width = 8, .height = 4, .pixels = std::vector<Vec3f>(32, Vec3f(0.1f))};
@@ -107,10 +137,12 @@ TEST(WideTracer, GivesTheSameBitsForAnyNumberOfThreads) {
   scene.environment = half_sky({0.0f, 0.0f, 1.0f});
   scene.lights.emplace_back(SunLight{});
   const Sites sites = box_sites(volume, 500, OuterSide::kLower);
-  const SampleSet one = trace_with("wide", volume, scene, sites, {.rays = 16}, 1).samples;
-  const SampleSet three = trace_with("wide", volume, scene, sites, {.rays = 16}, 3).samples;
-  EXPECT_EQ(one.radiance, three.radiance);
-  EXPECT_EQ(one.variance, three.variance);
+  for (const int bounces : {0, kAllBounces}) {
+    const SampleSet one = trace_with("wide", volume, scene, sites, {.rays = 16, .bounces = bounces}, 1).samples;
+    const SampleSet three = trace_with("wide", volume, scene, sites, {.rays = 16, .bounces = bounces}, 3).samples;
+    EXPECT_EQ(one.radiance, three.radiance);
+    EXPECT_EQ(one.variance, three.variance);
+  }
 }
 
 TEST(WideTracer, SaysItsOwnVariance) {

@@ -1,10 +1,14 @@
 #include <isolux/raytrace_flat/flat_tracer.h>
 
+#include <cstddef>
+#include <cstdint>
 #include <mutex>
 #include <utility>
+#include <variant>
 #include <vector>
 
 #include "sky_light.h"
+#include "sun_light.h"
 #include "trace_request.h"
 #include "wide/net_mean.h"
 #include "wide/path_waves.h"
@@ -45,14 +49,34 @@ class WideTracer final : public FlatTracer {
     samples.channels = is_grey(scene) ? 1 : 3;
     samples.radiance.resize(samples.size() * std::size_t(samples.channels));
     samples.variance.resize(samples.size());
-    if (is_sky_light(scene, settings)) {
-      add(counters, add_sky_light(volume, scene, settings, run, samples));
-      return;
+    if (settings.bounces == 0) {
+      without_reflections(volume, scene, settings, run, samples, counters);
+    } else {
+      by_paths(volume, scene, settings, run, samples, counters);
     }
+  }
+
+  /// Suns and what is seen of the sky apart; their sums and variances add up.
+  void without_reflections(const Volume& volume, const Scene& scene, const TraceSettings& settings, const Run& run,
+                           SampleSet& samples, TraceCounters& counters) const {
+    Scene rest = scene;
+    std::erase_if(rest.lights, [](const Light& light) { return std::holds_alternative<SunLight>(light); });
+    if (is_sky_light(rest)) {
+      add(counters, add_sky_light(volume, rest, settings, run, samples));
+    } else {
+      by_paths(volume, rest, settings, run, samples, counters);
+    }
+    for (std::size_t i = 0; i < scene.lights.size(); ++i)
+      if (const auto* sun = std::get_if<SunLight>(&scene.lights[i]))
+        add(counters, add_sun_light(volume, scene.outer, *sun, std::uint32_t(i), settings, run, samples));
+  }
+
+  void by_paths(const Volume& volume, const Scene& scene, const TraceSettings& settings, const Run& run,
+                SampleSet& samples, TraceCounters& counters) const {
     const wide::PathWaves waves(volume, scene, settings, options_.limits, run.seed, samples.sites);
     const wide::BlockRequest request{.outer = scene.outer,
                                      .rays_per_site = waves.aimer().rays(),
-                                     .sites_per_block = waves.aimer().sites_per_batch()};
+                                     .sites_per_block = wide::sites_per_batch(waves.aimer().rays())};
     std::mutex adding;
     wide::for_each_block(volume, samples.sites, request, run, "trace", [&](const wide::SiteBlock& block) {
       TraceCounters part;

@@ -17,6 +17,13 @@
 
 namespace isolux::wide {
 
+/// Sites whose rays together fill a batch: enough to keep the queues full to the end, few enough to stay in the second
+/// cache.
+[[nodiscard]] inline std::size_t sites_per_batch(std::size_t rays) {
+  constexpr std::size_t kBatch = 8192;
+  return std::max<std::size_t>(1, kBatch / rays);
+}
+
 /// The first rays of sites: every site's are the same net of points with its own digital shift, independent of all
 /// others or such that neighbours' rays are one net.
 class Aimer {
@@ -31,8 +38,6 @@ class Aimer {
   [[nodiscard]] std::size_t rays() const { return rays_; }
   [[nodiscard]] const ToIndex& to_index() const { return to_index_; }
   [[nodiscard]] const SobolPoints& points() const { return points_; }
-  /// Sites whose rays together fill a batch.
-  [[nodiscard]] std::size_t sites_per_batch() const { return std::max<std::size_t>(1, kBatch / rays_); }
 
   /// Appends the rays of a site to the batch. \pre room for them
   void append(const Sites& sites, std::size_t site, Rays& rays, Directions& world) const {
@@ -53,9 +58,6 @@ class Aimer {
   }
 
  private:
-  /// Enough to keep the queues full to the end, few enough to stay in the second cache.
-  static constexpr std::size_t kBatch = 8192;
-
   [[nodiscard]] SobolPoint shift_of(const Sites& sites, std::size_t site, std::size_t key) const {
     const NetPlaces::Place place = places_ ? places_->of(sites, site) : NetPlaces::Place{.net = key, .part = 0};
     const std::uint64_t bits = mix_bits(seed_ + place.net);

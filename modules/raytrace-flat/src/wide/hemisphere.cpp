@@ -30,8 +30,32 @@ HWY_INLINE Floats unit(const std::uint32_t* points, std::uint32_t shift) {
   return hn::Mul(hn::ConvertTo(f, hn::BitCast(i, bits)), hn::Set(f, 0x1p-24f));
 }
 
-void aim(const Pose& pose, const SobolPoints& points, std::size_t first, std::size_t count, const ToIndex& to_index,
-         std::size_t at, Rays& rays, Directions& world) {
+/// What a fraction of a solid angle becomes: distance from the axis, and height along it.
+struct OnSphere {
+  Floats radius;
+  Floats height;
+};
+
+struct CosineHemisphere {
+  [[nodiscard]] HWY_INLINE OnSphere at(Floats u) const {
+    return {.radius = hn::Sqrt(u), .height = hn::Sqrt(hn::Sub(hn::Set(FloatTag(), 1.0f), u))};
+  }
+};
+
+struct UniformCone {
+  float one_minus_cosine;
+
+  [[nodiscard]] HWY_INLINE OnSphere at(Floats u) const {
+    const FloatTag f;
+    const Floats sunk = hn::Mul(u, hn::Set(f, one_minus_cosine));
+    return {.radius = hn::Sqrt(hn::Mul(sunk, hn::Sub(hn::Set(f, 2.0f), sunk))),
+            .height = hn::Sub(hn::Set(f, 1.0f), sunk)};
+  }
+};
+
+template <class Shape>
+HWY_INLINE void aim_at(const Shape& shape, const Pose& pose, const SobolPoints& points, std::size_t first,
+                       std::size_t count, const ToIndex& to_index, std::size_t at, Rays& rays, Directions& world) {
   const FloatTag f;
   const float* n = pose.normal;
   // The frame of Duff et al., "Building an orthonormal basis, revisited" (JCGT 2017).
@@ -40,15 +64,14 @@ void aim(const Pose& pose, const SobolPoints& points, std::size_t first, std::si
   const float b = n[0] * n[1] * a;
   const float x[3] = {1.0f + sign * n[0] * n[0] * a, sign * b, -sign * n[0]};
   const float y[3] = {b, sign + n[1] * n[1] * a, -n[1]};
-  const Floats one = hn::Set(f, 1.0f);
   for (std::size_t k = 0; k < count; k += hn::Lanes(f)) {
     const Floats u = unit(points.u.data() + first + k, pose.shift_u);
     const Floats angle =
         hn::Mul(hn::Sub(unit(points.v.data() + first + k, pose.shift_v), hn::Set(f, 0.5f)), hn::Set(f, 6.2831853f));
-    const Floats radius = hn::Sqrt(u);
-    const Floats px = hn::Mul(radius, hn::Cos(f, angle));
-    const Floats py = hn::Mul(radius, hn::Sin(f, angle));
-    const Floats pz = hn::Sqrt(hn::Sub(one, u));
+    const OnSphere on = shape.at(u);
+    const Floats px = hn::Mul(on.radius, hn::Cos(f, angle));
+    const Floats py = hn::Mul(on.radius, hn::Sin(f, angle));
+    const Floats pz = on.height;
     Floats w[3];
     for (int c = 0; c < 3; ++c) {
       w[c] = hn::MulAdd(px, hn::Set(f, x[c]), hn::MulAdd(py, hn::Set(f, y[c]), hn::Mul(pz, hn::Set(f, n[c]))));
@@ -65,6 +88,16 @@ void aim(const Pose& pose, const SobolPoints& points, std::size_t first, std::si
   }
 }
 
+void aim(const Pose& pose, const SobolPoints& points, std::size_t first, std::size_t count, const ToIndex& to_index,
+         std::size_t at, Rays& rays, Directions& world) {
+  aim_at(CosineHemisphere{}, pose, points, first, count, to_index, at, rays, world);
+}
+
+void cone(float one_minus_cosine, const Pose& pose, const SobolPoints& points, std::size_t count,
+          const ToIndex& to_index, std::size_t at, Rays& rays, Directions& world) {
+  aim_at(UniformCone{one_minus_cosine}, pose, points, 0, count, to_index, at, rays, world);
+}
+
 }  // namespace HWY_NAMESPACE
 }  // namespace isolux::wide
 HWY_AFTER_NAMESPACE();
@@ -73,6 +106,7 @@ HWY_AFTER_NAMESPACE();
 namespace isolux::wide {
 
 HWY_EXPORT(aim);
+HWY_EXPORT(cone);
 
 SobolPoint sobol_point(std::uint64_t index) {
   // Direction numbers: the identity (van der Corput), and Pascal's matrix modulo 2, whose columns each follow from
@@ -111,6 +145,11 @@ ToIndex::ToIndex(const IndexToWorld& frame) : m{}, world_step(0.0f) {
 void aim_hemisphere(const Pose& pose, const SobolPoints& points, std::size_t first, std::size_t count,
                     const ToIndex& to_index, std::size_t at, Rays& rays, Directions& world) {
   HWY_DYNAMIC_DISPATCH(aim)(pose, points, first, count, to_index, at, rays, world);
+}
+
+void aim_cone(float one_minus_cosine, const Pose& pose, const SobolPoints& points, std::size_t count,
+              const ToIndex& to_index, std::size_t at, Rays& rays, Directions& world) {
+  HWY_DYNAMIC_DISPATCH(cone)(one_minus_cosine, pose, points, count, to_index, at, rays, world);
 }
 
 }  // namespace isolux::wide

@@ -57,4 +57,9 @@ struct ToIndex {
 void aim_hemisphere(const Pose& pose, const SobolPoints& points, std::size_t first, std::size_t count,
                     const ToIndex& to_index, std::size_t at, Rays& rays, Directions& world);
 
+/// The same for the first `count` points, even in the cone about the pose's normal whose half angle has that cosine
+/// less than 1.
+void aim_cone(float one_minus_cosine, const Pose& pose, const SobolPoints& points, std::size_t count,
+              const ToIndex& to_index, std::size_t at, Rays& rays, Directions& world);
+
 }  // namespace isolux::wide

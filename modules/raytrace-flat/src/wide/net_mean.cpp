@@ -18,6 +18,8 @@ std::uint64_t morton_place(const SobolPoints& points, std::uint32_t i) {
   return key;
 }
 
+constexpr float kUnknownVariance = std::numeric_limits<float>::max();
+
 }  // namespace
 
 NetMean::NetMean(const SobolPoints& points, std::size_t rays) : order_(rays) {
@@ -41,16 +43,23 @@ NetMean::Moments NetMean::moments(std::span<const Vec3> values) const {
 
 void NetMean::put(const Moments& moments, std::size_t site, SampleSet& samples) const {
   const auto channels = std::size_t(samples.channels);
-  const auto n = double(order_.size());
   const bool is_lit = samples.sites.normals[site] != Vec3f(0.0f);
-  const auto [sum, differences] = is_lit ? moments : Moments{};
+  for (std::size_t c = 0; c < channels; ++c) samples.radiance[site * channels + c] = 0.0f;
+  samples.variance[site] = is_lit && order_.size() > 1 ? 0.0f : kUnknownVariance;
+  if (is_lit) add(moments, site, samples);
+}
+
+void NetMean::add(const Moments& moments, std::size_t site, SampleSet& samples) const {
+  const auto channels = std::size_t(samples.channels);
+  const auto n = double(order_.size());
   double variance = 0.0;
   for (std::size_t c = 0; c < channels; ++c) {
-    samples.radiance[site * channels + c] = float(sum[int(c)] / n);
-    variance += differences[int(c)] / double(channels);
+    samples.radiance[site * channels + c] += float(moments.sum[int(c)] / n);
+    variance += moments.differences[int(c)] / double(channels);
   }
-  constexpr double kUnknown = std::numeric_limits<float>::max();
-  samples.variance[site] = float(is_lit && n > 1.0 ? std::min(variance / (2.0 * (n - 1.0) * n), kUnknown) : kUnknown);
+  if (n > 1.0)
+    samples.variance[site] =
+        float(std::min(double(samples.variance[site]) + variance / (2.0 * (n - 1.0) * n), double(kUnknownVariance)));
 }
 
 std::vector<std::size_t> choose_probes(const Sites& sites) {
@@ -75,7 +84,6 @@ Sites sites_of(const Sites& sites, std::span<const std::size_t> numbers) {
 
 void calibrate_variance(SampleSet& samples, std::span<const std::size_t> probes, const SampleSet& again,
                         std::span<const std::uint32_t> rays) {
-  constexpr double kUnknown = std::numeric_limits<float>::max();
   constexpr std::size_t kEnough = 64;
   struct Tally {
     double expected = 0.0;
@@ -88,7 +96,7 @@ void calibrate_variance(SampleSet& samples, std::span<const std::size_t> probes,
   std::map<std::uint32_t, Tally> by_rays;
   for (std::size_t k = 0; k < probes.size(); ++k) {
     const auto variance = double(samples.variance[probes[k]]);
-    if (variance == kUnknown) return;
+    if (variance == double(kUnknownVariance)) return;
     double found = 0.0;
     for (std::size_t c = 0; c < channels; ++c) {
       const double d = double(samples.radiance[probes[k] * channels + c]) - double(again.radiance[k * channels + c]);
@@ -101,7 +109,7 @@ void calibrate_variance(SampleSet& samples, std::span<const std::size_t> probes,
     }
   }
   for (std::size_t site = 0; site < samples.size(); ++site) {
-    if (double(samples.variance[site]) == kUnknown) continue;
+    if (samples.variance[site] == kUnknownVariance) continue;
     const auto own = by_rays.find(rays.empty() ? 0 : rays[site]);
     const Tally& tally = own != by_rays.end() && own->second.count >= kEnough ? own->second : all;
     samples.variance[site] *= float(tally.scale());

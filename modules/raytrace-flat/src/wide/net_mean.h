@@ -33,6 +33,8 @@ class NetMean {
     put(moments(values), site, samples);
   }
   void put(const Moments& moments, std::size_t site, SampleSet& samples) const;
+  /// Adds independent light of a site with a normal to what is there.
+  void add(const Moments& moments, std::size_t site, SampleSet& samples) const;
 
  private:
   std::vector<std::uint32_t> order_;  ///< rays along a curve of Morton's
