@@ -4,6 +4,7 @@
 
 #include <mutex>
 
+#include "prefetch_sites.h"
 #include "wide/aimer.h"
 #include "wide/rays.h"
 #include "wide/site_blocks.h"
@@ -32,8 +33,11 @@ TraceCounters gather(const Volume& volume, const Sites& sites, const GatherSetti
   wide::for_each_block(volume, sites, request, run, "trace", [&](const wide::SiteBlock& block) {
     static thread_local wide::Batch batch;
     batch.clear(block.sites.size() * aimer.rays());
-    for (const std::uint32_t site : block.sites)
+    for (std::size_t i = 0; i < block.sites.size(); ++i) {
+      if (i + kSitesAhead < block.sites.size()) prefetch(sites, block.sites[i + kSitesAhead]);
+      const std::uint32_t site = block.sites[i];
       aimer.append(sites, site, settings.keys.empty() ? site : settings.keys[site], batch.rays, batch.world);
+    }
     TraceCounters counters;
     wide::trace(block.field, block.occupancy, block.inner, question, batch.rays, counters);
     GatheredRays gathered;

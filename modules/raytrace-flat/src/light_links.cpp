@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "link_solver.h"
+#include "prefetch_sites.h"
 #include "ray_values.h"
 #include "wide/aimer.h"
 #include "wide/net_mean.h"
@@ -19,13 +20,7 @@
 namespace isolux {
 namespace {
 
-/// Sites of a block lie far apart in memory: how many early they are asked for.
-constexpr std::size_t kAhead = 8;
-
-void prefetch(const Sites& sites, const SampleSet& samples, std::size_t site) {
-  hwy::Prefetch(&sites.positions[site]);
-  hwy::Prefetch(&sites.isovalues[site]);
-  hwy::Prefetch(&sites.normals[site]);
+void prefetch(const SampleSet& samples, std::size_t site) {
   hwy::Prefetch(&samples.radiance[site * std::size_t(samples.channels)]);
   hwy::Prefetch(&samples.variance[site]);
 }
@@ -158,8 +153,10 @@ void LightLinks::add_up(const Scene& scene, const SampleSet& lamps, const Target
       for (std::size_t b = task.begin; b < task.end; ++b) {
         const LinkBlock& block = round.blocks[b];
         for (std::size_t place = 0; place < block.sites.size(); ++place) {
-          if (places.empty() && place + kAhead < block.sites.size())
-            prefetch(sites_, samples, block.sites[place + kAhead]);
+          if (places.empty() && place + kSitesAhead < block.sites.size()) {
+            prefetch(sites_, block.sites[place + kSitesAhead]);
+            prefetch(samples, block.sites[place + kSitesAhead]);
+          }
           const std::size_t site = block.sites[place];
           if (!places.empty() && places[site] == kLeftOut) continue;
           auto known = brought.known_moments(round, block, place, sites_.isovalues[site]);
