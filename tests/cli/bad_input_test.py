@@ -46,6 +46,7 @@ class BadCommandLine(CommandLineTest):
             (("render", "gen:sphere:8", "-o", "i.png", "--iso", "inf"), "inf"),
             (("extract", "gen:sphere:8", "-o", "m.ply", "--iso", "-.3", "--min-component", "-3"), "--min-component"),
             (("extract", "gen:sphere:8", "-o", "m.ply", "--iso", "-.3", "--backend", "flying"), "marching_cubes"),
+            (("extract", "gen:sphere:8", "-o", "m.ply", "--iso", "-.3", "--normals", "exact"), "accurate"),
             (("render", "gen:sphere:8", "-o", "i.png", "--iso", "-.3", "--size", "0x5"), "0x5"),
             (("render", "gen:sphere:8", "-o", "i.png", "--iso", "-.3", "--view", "30"), "--view"),
             (("render", "gen:sphere:8", "-o", "i.png", "--iso", "-.3", "--mode", "global"), "--light"),

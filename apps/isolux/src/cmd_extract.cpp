@@ -79,6 +79,11 @@ std::vector<Rgb8> baked_colours(const IsoMesh& mesh, const Volume& volume, const
   return colours;
 }
 
+NormalKind normal_kind(const std::string& name) {
+  if (name == "faces") return NormalKind::kFaces;
+  return name == "accurate" ? NormalKind::kAccurate : NormalKind::kGradient;
+}
+
 /// What the mesh's normals point to: the side whose light it shows, unless the user says otherwise. `lit`: the outer
 /// side of the light or the scene.
 OuterSide facing(const Options& options, OuterSide lit) {
@@ -125,7 +130,7 @@ void run_extract(const Options& options, Session& session) {
     return extractor->extract(volume,
                               {.isovalue = options.isovalue,
                                .outer = outer,
-                               .normals = options.normals == "faces" ? NormalKind::kFaces : NormalKind::kGradient,
+                               .normals = normal_kind(options.normals),
                                .cap = options.cap ? CapKind::kBox : CapKind::kNone,
                                .min_component = options.min_component},
                               session.run);
@@ -149,7 +154,8 @@ void run_extract(const Options& options, Session& session) {
   session.report["triangles"] = mesh.n_faces();
   session.report["vertices"] = mesh.n_vertices();
   session.report["settings"] = {{"isovalue", options.isovalue},
-                                {"backend", session.stages.extractors.info(choice.name).name}};
+                                {"backend", session.stages.extractors.info(choice.name).name},
+                                {"normals", options.normals}};
   session.say(fmt::format("{} triangles, {} vertices", mesh.n_faces(), mesh.n_vertices()));
 }
 
@@ -178,8 +184,12 @@ void add_extract_command(CLI::App& program, Session& session) {
   command.add_option("--min-component", options->min_component, "leave out connected parts of fewer triangles")
       ->check(CLI::Range(std::size_t(0), std::size_t(1) << 32))
       ->type_name("N");
-  command.add_option("--normals", options->normals, "from the field's gradient (default) or from the faces")
-      ->check(CLI::IsMember({"gradient", "faces"}));
+  command
+      .add_option(
+          "--normals", options->normals,
+          "from the field's gradient by central differences, as the light has it (gradient, default), by higher "
+          "differences where the data are smooth (accurate), or from the faces")
+      ->check(CLI::IsMember({"gradient", "accurate", "faces"}));
   command.add_option("--backend", options->backend, "extractor backend")->type_name("NAME");
   command.add_option("--set", options->set, "an option of the extractor")->type_name("key=value");
   session.add_common_options(command);

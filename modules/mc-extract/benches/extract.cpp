@@ -136,6 +136,16 @@ void index_build(benchmark::State& state, const Subject& subject, IsoExtractor::
   for (auto _ : state) IsoExtractor(*volume, run_of(state), index);
 }
 
+/// What NormalKind::kAccurate adds to an extraction.
+void accurate_normals(benchmark::State& state, const Subject& subject) {
+  const Volume* volume = volume_of(subject);
+  if (volume == nullptr) return state.SkipWithError("ISOLUX_DATA is not set");
+  IndexedMesh mesh;
+  IsoExtractor(*volume).extract({.isovalue = subject.isovalue}, run_of(state), mesh);
+  for (auto _ : state) set_accurate_normals(*volume, OuterSide::kLower, run_of(state), mesh);
+  report(state, mesh.triangles.size());
+}
+
 void backend(benchmark::State& state, const Subject& subject, const std::string& name) {
   const Volume* volume = volume_of(subject);
   if (volume == nullptr) return state.SkipWithError("ISOLUX_DATA is not set");
@@ -260,6 +270,7 @@ void register_dense(const Subject& subject) {
   add(subject, "half_edges_kept", [](auto& state, auto& s) { kept<IsoMesh>(state, s, Index::kNone); });
   add(subject, "half_edges_kept_index", [](auto& state, auto& s) { kept<IsoMesh>(state, s, Index::kBricks); });
   add(subject, "half_edges_kept_bytes", [](auto& state, auto& s) { kept<IsoMesh>(state, s, Index::kBricksAndBytes); });
+  add(subject, "accurate_normals", accurate_normals);
   add(subject, "sweep", [](auto& state, auto& s) { sweep(state, s, Index::kNone); });
   add(subject, "sweep_index", [](auto& state, auto& s) { sweep(state, s, Index::kBricks); });
   add(subject, "index_build", [](auto& state, auto& s) { index_build(state, s, Index::kBricks); });

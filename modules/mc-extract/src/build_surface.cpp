@@ -69,7 +69,7 @@ IndexedMesh build_surface(const Volume& volume, const ExtractSettings& settings,
     for (const SharedVertex& v : block.top) top_below.push_back(numbers[v.id]);
     block = {};
   }
-  finish_mesh(mesh, volume, settings);
+  finish_mesh(mesh, volume, settings, run);
   return mesh;
 }
 

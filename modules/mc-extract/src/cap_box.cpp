@@ -1,5 +1,7 @@
 #include "cap_box.h"
 
+#include <isolux/mc_extract/accurate_normals.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -222,9 +224,10 @@ void cap_box(IndexedMesh& mesh, const Volume& volume, const LevelSet& level_set)
   BoxCap(mesh, volume, level_set).add();
 }
 
-void finish_mesh(IndexedMesh& mesh, const Volume& volume, const ExtractSettings& settings) {
+void finish_mesh(IndexedMesh& mesh, const Volume& volume, const ExtractSettings& settings, const Run& run) {
   if (settings.cap == CapKind::kBox) cap_box(mesh, volume, LevelSet(volume.lattice(), settings));
   if (settings.normals == NormalKind::kFaces) set_face_normals(mesh);
+  if (settings.normals == NormalKind::kAccurate) set_accurate_normals(volume, settings.outer, run, mesh);
   if (settings.min_component > 0) drop_small_components(mesh, settings.min_component);
 }
 

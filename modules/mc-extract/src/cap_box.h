@@ -10,8 +10,8 @@ namespace isolux::mc {
 /// extracted: square by square of the faces, between the mesh's boundary edges there and the corners that are inside.
 void cap_box(IndexedMesh& mesh, const Volume& volume, const LevelSet& level_set);
 
-/// What the settings ask of an extracted mesh beyond its surface: the cap, then normals of faces, then leaving out
-/// small components.
-void finish_mesh(IndexedMesh& mesh, const Volume& volume, const ExtractSettings& settings);
+/// What the settings ask of an extracted mesh beyond its surface: the cap, then other normals, then leaving out small
+/// components. \throw Cancelled
+void finish_mesh(IndexedMesh& mesh, const Volume& volume, const ExtractSettings& settings, const Run& run);
 
 }  // namespace isolux::mc

@@ -1,3 +1,4 @@
+#include <isolux/mc_extract/accurate_normals.h>
 #include <isolux/mc_extract/iso_extractor.h>
 
 #include <functional>
@@ -22,7 +23,7 @@ class IsoExtractor::Implementation {
   void extract(const ExtractSettings& settings, const Run& asked, IndexedMesh& mesh) {
     const Run run = suited(asked);
     march_.march(settings, run, index(), mesh);
-    mc::finish_mesh(mesh, *volume_, settings);
+    mc::finish_mesh(mesh, *volume_, settings, run);
   }
 
   void extract(const ExtractSettings& settings, const Run& asked, IsoMesh& mesh) {
@@ -40,6 +41,7 @@ class IsoExtractor::Implementation {
     if (mesh.n_edges() < size.edges) reach = [&](const mc::MeshSize& part) { mc::reach(mesh, part); };
     march_.write(run, reach, memory.positions, memory.normals, memory.connectivity);
     if (settings.normals == NormalKind::kFaces) mc::set_face_normals(mesh);
+    if (settings.normals == NormalKind::kAccurate) set_accurate_normals(*volume_, settings.outer, run, mesh);
   }
 
  private:

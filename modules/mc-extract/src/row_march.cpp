@@ -9,6 +9,7 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <limits>
+#include <new>
 #include <utility>
 
 #include "layer_pipeline.h"
@@ -94,7 +95,11 @@ RowMarch::RowMarch(const Volume& volume, double dense)
 void RowMarch::keep_bytes(const Volume& volume, const Run& run) {
   const auto values = volume.values.values();
   constexpr std::size_t kReadBeyond = 64;
-  bytes_.resize(values.size() + kReadBeyond);
+  try {
+    bytes_.resize(values.size() + kReadBeyond);
+  } catch (const std::bad_alloc&) {
+    return;  // slower, but the same
+  }
   std::atomic<bool> fit = true;
   parallel_blocks(values.size(), std::size_t(1) << 18, run, "", [&](const Block& block) {
     if (fit && !to_bytes(&values[block.begin], block.end - block.begin, &bytes_[block.begin])) fit = false;

@@ -31,7 +31,8 @@ class RowMarch {
   /// \throw InvalidInput for volumes whose planes are beyond 32-bit offsets.
   explicit RowMarch(const Volume& volume, double dense = kDense);
 
-  /// Copies the volume to bytes if all values fit, a quarter of its memory: what is read after that, in place of it.
+  /// Copies the volume to bytes if all values fit and there is memory, a quarter of the volume's: what is read after
+  /// that, in place of it.
   void keep_bytes(const Volume& volume, const Run& run);
 
   /// The whole way, a few layers at a time, so that values and bits are still in the cache where they are used again.

@@ -82,53 +82,6 @@ TEST(IsoExtractor, HasThePlainWaysNormals) {
   }
 }
 
-struct SmoothField {
-  const char* name;
-  double (*value)(const Vec3& p);
-  float isovalue;
-};
-
-const SmoothField kSmoothFields[] = {{"gyroid",
-                                      [](const Vec3& p) {
-                                        const Vec3 x = p * 12.566370614359172;
-                                        return std::sin(x.x) * std::cos(x.y) + std::sin(x.y) * std::cos(x.z) +
-                                               std::sin(x.z) * std::cos(x.x);
-                                      },
-                                      0.3f},
-                                     {"sphere", [](const Vec3& p) { return -glm::distance(p, Vec3(0.5)); }, -0.3f},
-                                     {"torus",
-                                      [](const Vec3& p) {
-                                        const double ring = std::hypot(p.x - 0.5, p.y - 0.5) - 0.28;
-                                        return -std::hypot(ring, p.z - 0.5);
-                                      },
-                                      -0.1f}};
-
-/// Angle between the mesh's normals and those of the field itself, root mean square.
-double normal_error_degrees(const IndexedMesh& mesh, const SmoothField& field) {
-  double sum = 0.0;
-  for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
-    constexpr double kStep = 1e-5;  // error of second order: 1e-7 of a degree
-    const Vec3 p(mesh.positions[v]);
-    Vec3 gradient(0.0);
-    for (int a = 0; a < 3; ++a) {
-      Vec3 step(0.0);
-      step[a] = kStep;
-      gradient[a] = field.value(p + step) - field.value(p - step);
-    }
-    const double cosine = glm::dot(-glm::normalize(gradient), Vec3(mesh.normals[v]));
-    const double degrees = std::acos(std::min(1.0, cosine)) * 57.29577951308232;
-    sum += degrees * degrees;
-  }
-  return std::sqrt(sum / double(mesh.positions.size()));
-}
-
-TEST(IsoExtractor, NormalsOfSmoothFieldsAreRightToHalfADegree) {
-  for (const SmoothField& field : kSmoothFields) {
-    const Volume volume = sampled(Index3(128), unit_cube(128), field.value);
-    EXPECT_LT(normal_error_degrees(indexed(volume, {.isovalue = field.isovalue}), field), 0.5) << field.name;
-  }
-}
-
 TEST(RowMarch, GivesTheSameBySparseAndDensePasses) {
   // Small volumes have too many mixed bricks for the sparse way to be taken by itself.
   for (const Volume& volume : {gyroid(70), ball(81), noise(Index3(33, 9, 18), 3), noise(Index3(130, 5, 66), 4, 8)}) {

@@ -1,6 +1,7 @@
 // The front page of mc-extract: isosurfaces as OpenMesh half-edge meshes with smoothed vertex normals.
 #pragma once
 
+#include <isolux/mc_extract/accurate_normals.h>
 #include <isolux/mc_extract/extractor.h>
 #include <isolux/mc_extract/indexed_mesh.h>
 #include <isolux/mc_extract/iso_extractor.h>

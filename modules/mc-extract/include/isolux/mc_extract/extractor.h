@@ -15,8 +15,9 @@ namespace isolux {
 /// Where vertex normals come from.
 enum class NormalKind : std::uint8_t {
   kGradient,  ///< minus (or plus) the interpolated central differences of the field: smooth, independent of the
-              ///< triangles
-  kFaces      ///< area-weighted mean of the adjacent triangles' normals
+              ///< triangles, and those that the light is computed with
+  kFaces,     ///< area-weighted mean of the adjacent triangles' normals
+  kAccurate   ///< of a gradient of higher order, where the data are smooth: see set_accurate_normals
 };
 
 /// What becomes of a level set where it meets the box.

@@ -17,8 +17,8 @@ class IsoExtractor {
   enum class Index : std::uint8_t {
     /// An index of bricks, made in one pass that costs about one extraction: 1/128 of the volume's memory.
     kBricks,
-    /// The same, and a copy in bytes where all values are whole numbers from 0 to 255 (else nothing more): a quarter of
-    /// the volume's memory, for a sixth to a quarter less time an isovalue.
+    /// The same, and a copy in bytes where all values are whole numbers from 0 to 255 and there is memory for it (else
+    /// nothing more): a quarter of the volume's memory, for a sixth to a quarter less time an isovalue.
     kBricksAndBytes,
     /// Nothing: for a single isovalue.
     kNone
