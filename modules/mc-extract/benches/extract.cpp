@@ -136,7 +136,6 @@ void index_build(benchmark::State& state, const Subject& subject, IsoExtractor::
   for (auto _ : state) IsoExtractor(*volume, run_of(state), index);
 }
 
-/// What NormalKind::kAccurate adds to an extraction.
 void accurate_normals(benchmark::State& state, const Subject& subject) {
   const Volume* volume = volume_of(subject);
   if (volume == nullptr) return state.SkipWithError("ISOLUX_DATA is not set");
@@ -155,7 +154,7 @@ void backend(benchmark::State& state, const Subject& subject, const std::string&
   report(state, triangles);
 }
 
-/// What OpenMesh's own way would add to an indexed mesh.
+/// OpenMesh's own way, beside an indexed mesh.
 void openmesh_add_face(benchmark::State& state, const Subject& subject) {
   const Volume* volume = volume_of(subject);
   if (volume == nullptr) return state.SkipWithError("ISOLUX_DATA is not set");
@@ -243,7 +242,6 @@ void vtk_sweep(benchmark::State& state, const Subject& subject) {
   report_sweep(state, triangles);
 }
 #endif
-
 void add(const Subject& subject, const std::string& what, auto function) {
   for (const int threads : {1, 2})
     benchmark::RegisterBenchmark((std::string(subject.name) + "/" + what).c_str(),

@@ -17,7 +17,8 @@ class IsoExtractor::Implementation {
   Implementation(const Volume& volume, const Run& run, Index index) : volume_(&volume), march_(volume) {
     if (index == Index::kNone) return;
     index_.emplace(volume, run);
-    if (index == Index::kBricksAndBytes) march_.keep_bytes(volume, run);
+    if (index != Index::kBricks) march_.keep_bytes(volume, run);
+    if (index == Index::kBricksAndShorts) march_.keep_shorts(volume, run);
   }
 
   void extract(const ExtractSettings& settings, const Run& asked, IndexedMesh& mesh) {

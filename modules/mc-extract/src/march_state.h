@@ -75,7 +75,9 @@ enum class Connectivity : std::uint8_t {
 /// Views of the grid and of the extractor's buffers.
 struct MarchState {
   const float* values = nullptr;
-  const std::uint8_t* bytes = nullptr;  ///< the same, where they fit and a copy was made; 64 bytes more may be read
+  /// The same in one of these where they fit and a copy was made; 64 more may be read.
+  const std::uint8_t* bytes = nullptr;
+  const std::int16_t* shorts = nullptr;
   int nx = 0;
   int ny = 0;
   int nz = 0;
@@ -95,12 +97,14 @@ struct MarchState {
   [[nodiscard]] std::uint64_t* row_bits(int j, int k) {
     return bits + (std::size_t(k) * std::size_t(ny) + std::size_t(j)) * std::size_t(words);
   }
-  /// Value: float, or std::uint8_t where there are bytes.
+  /// Value: float, or std::uint8_t or std::int16_t where there are bytes or shorts.
   template <class Value>
   [[nodiscard]] const Value* row_values(int j, int k) const {
     const std::size_t place = (std::size_t(k) * std::size_t(ny) + std::size_t(j)) * std::size_t(nx);
     if constexpr (std::is_same_v<Value, std::uint8_t>)
       return bytes + place;
+    else if constexpr (std::is_same_v<Value, std::int16_t>)
+      return shorts + place;
     else
       return values + place;
   }

@@ -2,14 +2,11 @@
 
 #include <fmt/format.h>
 #include <isolux/core/error.h>
-#include <isolux/core/parallel.h>
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <limits>
-#include <new>
 #include <utility>
 
 #include "layer_pipeline.h"
@@ -90,24 +87,6 @@ RowMarch::RowMarch(const Volume& volume, double dense)
   march_.rows = rows_.data();
   march_.active = active_.data();
   march_.slabs = slabs_.data();
-}
-
-void RowMarch::keep_bytes(const Volume& volume, const Run& run) {
-  const auto values = volume.values.values();
-  constexpr std::size_t kReadBeyond = 64;
-  try {
-    bytes_.resize(values.size() + kReadBeyond);
-  } catch (const std::bad_alloc&) {
-    return;  // slower, but the same
-  }
-  std::atomic<bool> fit = true;
-  parallel_blocks(values.size(), std::size_t(1) << 18, run, "", [&](const Block& block) {
-    if (fit && !to_bytes(&values[block.begin], block.end - block.begin, &bytes_[block.begin])) fit = false;
-  });
-  if (fit)
-    march_.bytes = bytes_.data();
-  else
-    bytes_ = {};
 }
 
 int RowMarch::layer_count() const { return (march_.nz + kLayer - 1) / kLayer; }

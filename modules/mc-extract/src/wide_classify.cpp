@@ -48,25 +48,28 @@ std::uint64_t classify_word(const MarchState& march, const float* values, int co
   return word;
 }
 
-/// On bytes, `value >= isovalue` is `byte >= threshold`, and `value <= isovalue` the opposite of another one.
-struct ByteThreshold {
-  int lowest;  ///< 0 to 256
+/// On whole numbers, `value >= isovalue` is `value >= threshold`, and `value <= isovalue` the opposite of another one.
+template <class Narrow>
+struct Threshold {
+  static constexpr int kNone = int(std::numeric_limits<Narrow>::max()) + 1;
+  int lowest;  ///< up to kNone
   bool inside_below;
 
-  ByteThreshold(float isovalue, OuterSide outer) : inside_below(outer == OuterSide::kHigher) {
+  Threshold(float isovalue, OuterSide outer) : inside_below(outer == OuterSide::kHigher) {
     const float first = inside_below ? std::floor(isovalue) + 1.0f : std::ceil(isovalue);
-    lowest = int(std::clamp(first, 0.0f, 256.0f));
+    lowest = int(std::clamp(first, float(std::numeric_limits<Narrow>::min()), float(kNone)));
   }
 };
 
-/// The inside bits of 64 bytes, of which those beyond `count` are none of the row's.
-std::uint64_t classify_word(const std::uint8_t* bytes, int count, const ByteThreshold& threshold) {
-  const hn::CappedTag<std::uint8_t, 64> d;
+/// The inside bits of 64 values, of which those beyond `count` are none of the row's.
+template <class Narrow>
+std::uint64_t classify_word(const Narrow* values, int count, const Threshold<Narrow>& threshold) {
+  const hn::CappedTag<Narrow, 64 / sizeof(Narrow)> d;
   std::uint64_t word = 0;
-  if (threshold.lowest < 256) {
-    const auto lowest = hn::Set(d, std::uint8_t(threshold.lowest));
+  if (threshold.lowest < Threshold<Narrow>::kNone) {
+    const auto lowest = hn::Set(d, Narrow(threshold.lowest));
     for (std::size_t i = 0; i < 64; i += hn::Lanes(d)) {
-      const auto value = hn::LoadU(d, bytes + i);
+      const auto value = hn::LoadU(d, values + i);
       std::uint64_t bits = 0;
       hn::StoreMaskBits(d, hn::Eq(hn::Max(value, lowest), value), reinterpret_cast<std::uint8_t*>(&bits));
       word |= bits << i;
@@ -76,42 +79,56 @@ std::uint64_t classify_word(const std::uint8_t* bytes, int count, const ByteThre
   return count < 64 ? word & ((std::uint64_t(1) << count) - 1) : word;
 }
 
+template <class Narrow>
+void classify_narrow_row(MarchState& march, int j, int k) {
+  const Threshold<Narrow> threshold(march.isovalue, march.outer);
+  const Narrow* values = march.row_values<Narrow>(j, k);
+  for (int word = 0; word < march.words; ++word)
+    march.row_bits(j, k)[word] = classify_word(values + 64 * word, march.nx - 64 * word, threshold);
+}
+
 void classify_row_wide(MarchState& march, int j, int k) {
-  if (march.bytes != nullptr) {
-    const ByteThreshold threshold(march.isovalue, march.outer);
-    const std::uint8_t* bytes = march.row_values<std::uint8_t>(j, k);
-    for (int word = 0; word < march.words; ++word)
-      march.row_bits(j, k)[word] = classify_word(bytes + 64 * word, march.nx - 64 * word, threshold);
-    return;
-  }
+  if (march.bytes != nullptr) return classify_narrow_row<std::uint8_t>(march, j, k);
+  if (march.shorts != nullptr) return classify_narrow_row<std::int16_t>(march, j, k);
   const float* values = march.row_values<float>(j, k);
   std::uint64_t* bits = march.row_bits(j, k);
   for (int word = 0; word < march.words; ++word)
     bits[word] = classify_word(march, values + 64 * word, std::min(64, march.nx - 64 * word));
 }
 
-void classify_bricks_wide(MarchState& march, const BrickRows& rows, int word, unsigned active, std::uint64_t uniform) {
+/// Sets the word's bits in each row: `uniform`, and bits_of(j, k) of the bricks that are read.
+void classify_brick_words(MarchState& march, const BrickRows& rows, int word, std::uint64_t uniform,
+                          const auto& bits_of) {
+  for (int k = rows.first_plane; k < rows.last_plane; ++k)
+    for (int j = rows.first_row; j < rows.last_row; ++j) march.row_bits(j, k)[word] = uniform | bits_of(j, k);
+}
+
+template <class Narrow>
+void classify_narrow_bricks(MarchState& march, const BrickRows& rows, int word, unsigned active,
+                            std::uint64_t uniform) {
   const int count = std::min(64, march.nx - 64 * word);
-  const ByteThreshold threshold(march.isovalue, march.outer);
+  const Threshold<Narrow> threshold(march.isovalue, march.outer);
   std::uint64_t read = 0;
   for (unsigned left = active; left != 0; left &= left - 1)
     read |= std::uint64_t(0xffff) << (16 * std::countr_zero(left));
-  for (int k = rows.first_plane; k < rows.last_plane; ++k) {
-    for (int j = rows.first_row; j < rows.last_row; ++j) {
-      std::uint64_t bits = uniform;
-      if (march.bytes != nullptr) {
-        const std::uint8_t* bytes = march.row_values<std::uint8_t>(j, k) + 64 * word;
-        march.row_bits(j, k)[word] = bits | (classify_word(bytes, count, threshold) & read);
-        continue;
-      }
-      const float* values = march.row_values<float>(j, k) + 64 * word;
-      for (unsigned left = active; left != 0; left &= left - 1) {
-        const int first = 16 * std::countr_zero(left);
-        bits |= classify_word(march, values + first, std::min(16, count - first)) << first;
-      }
-      march.row_bits(j, k)[word] = bits;
+  classify_brick_words(march, rows, word, uniform, [&](int j, int k) {
+    return classify_word(march.row_values<Narrow>(j, k) + 64 * word, count, threshold) & read;
+  });
+}
+
+void classify_bricks_wide(MarchState& march, const BrickRows& rows, int word, unsigned active, std::uint64_t uniform) {
+  if (march.bytes != nullptr) return classify_narrow_bricks<std::uint8_t>(march, rows, word, active, uniform);
+  if (march.shorts != nullptr) return classify_narrow_bricks<std::int16_t>(march, rows, word, active, uniform);
+  const int count = std::min(64, march.nx - 64 * word);
+  classify_brick_words(march, rows, word, uniform, [&](int j, int k) {
+    const float* values = march.row_values<float>(j, k) + 64 * word;
+    std::uint64_t bits = 0;
+    for (unsigned left = active; left != 0; left &= left - 1) {
+      const int first = 16 * std::countr_zero(left);
+      bits |= classify_word(march, values + first, std::min(16, count - first)) << first;
     }
-  }
+    return bits;
+  });
 }
 
 void find_range_wide(const Volume& volume, const Index3& first, const Index3& last, float& low, float& high) {
@@ -152,28 +169,37 @@ void find_range_wide(const Volume& volume, const Index3& first, const Index3& la
   }
 }
 
-/// Whether the values are whole numbers from 0 to 255, and these.
-bool to_bytes_wide(const float* values, std::size_t count, std::uint8_t* bytes) {
+/// Whether the values are whole numbers that the narrow type holds, and these.
+template <class Narrow>
+bool to_narrow(const float* values, std::size_t count, Narrow* narrow) {
   const hn::CappedTag<float, 16> d;
   const hn::RebindToSigned<decltype(d)> di;
-  const hn::Rebind<std::uint8_t, decltype(d)> d8;
+  const hn::Rebind<Narrow, decltype(d)> dn;
   auto same = hn::FirstN(di, hn::Lanes(di));
   std::size_t i = 0;
   for (; i + hn::Lanes(d) <= count; i += hn::Lanes(d)) {
     const auto value = hn::LoadU(d, values + i);
-    const auto byte = hn::DemoteTo(d8, hn::ConvertTo(di, value));
-    hn::StoreU(byte, d8, bytes + i);
+    const auto whole = hn::DemoteTo(dn, hn::ConvertTo(di, value));
+    hn::StoreU(whole, dn, narrow + i);
     // Bit by bit, so that -0 is none.
-    const auto back = hn::ConvertTo(d, hn::PromoteTo(di, byte));
+    const auto back = hn::ConvertTo(d, hn::PromoteTo(di, whole));
     same = hn::And(same, hn::Eq(hn::BitCast(di, back), hn::BitCast(di, value)));
   }
   bool all = hn::AllTrue(di, same);
   for (; i < count && all; ++i) {
-    all = values[i] >= 0.0f && values[i] <= 255.0f && !std::signbit(values[i]);
-    if (all) bytes[i] = std::uint8_t(values[i]);
-    all = all && float(bytes[i]) == values[i];
+    all = values[i] >= float(std::numeric_limits<Narrow>::min()) &&
+          values[i] <= float(std::numeric_limits<Narrow>::max());
+    if (all) narrow[i] = Narrow(values[i]);
+    all = all && std::bit_cast<std::uint32_t>(float(narrow[i])) == std::bit_cast<std::uint32_t>(values[i]);
   }
   return all;
+}
+
+bool to_bytes_wide(const float* values, std::size_t count, std::uint8_t* bytes) {
+  return to_narrow(values, count, bytes);
+}
+bool to_shorts_wide(const float* values, std::size_t count, std::int16_t* shorts) {
+  return to_narrow(values, count, shorts);
 }
 
 }  // namespace
@@ -188,6 +214,7 @@ HWY_EXPORT(classify_row_wide);
 HWY_EXPORT(classify_bricks_wide);
 HWY_EXPORT(find_range_wide);
 HWY_EXPORT(to_bytes_wide);
+HWY_EXPORT(to_shorts_wide);
 
 void classify_row(MarchState& march, int j, int k) { HWY_DYNAMIC_DISPATCH(classify_row_wide)(march, j, k); }
 
@@ -201,6 +228,10 @@ void find_range(const Volume& volume, const Index3& first, const Index3& last, f
 
 bool to_bytes(const float* values, std::size_t count, std::uint8_t* bytes) {
   return HWY_DYNAMIC_DISPATCH(to_bytes_wide)(values, count, bytes);
+}
+
+bool to_shorts(const float* values, std::size_t count, std::int16_t* shorts) {
+  return HWY_DYNAMIC_DISPATCH(to_shorts_wide)(values, count, shorts);
 }
 
 }  // namespace isolux::mc

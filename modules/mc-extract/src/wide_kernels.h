@@ -31,6 +31,8 @@ void find_range(const Volume& volume, const Index3& first, const Index3& last, f
 
 /// Copies values that are whole numbers from 0 to 255, none of them -0, to bytes; false if one is not.
 [[nodiscard]] bool to_bytes(const float* values, std::size_t count, std::uint8_t* bytes);
+/// The same with whole numbers from -32768 to 32767.
+[[nodiscard]] bool to_shorts(const float* values, std::size_t count, std::int16_t* shorts);
 
 /// Finds the words of slab k that hold anything, among `candidates` (packed, rising) or all if there are
 /// none given, and counts what its rows hold.

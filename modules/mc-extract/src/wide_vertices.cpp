@@ -56,6 +56,24 @@ HWY_INLINE void four(const std::uint8_t* values, F& a, F& b, F& c, F& d) {
   d = low_byte(hn::ShiftRight<24>(fours));
 }
 
+using Shorts = hn::Rebind<std::int16_t, Ints>;
+HWY_INLINE F widened(hn::Vec<Shorts> v) { return hn::ConvertTo(kF, hn::PromoteTo(kI, v)); }
+HWY_INLINE F one(const std::int16_t* values) { return widened(hn::LoadU(Shorts(), values)); }
+HWY_INLINE void two(const std::int16_t* values, F& a, F& b) {
+  hn::Vec<Shorts> v[2];
+  hn::LoadInterleaved2(Shorts(), values, v[0], v[1]);
+  a = widened(v[0]);
+  b = widened(v[1]);
+}
+HWY_INLINE void four(const std::int16_t* values, F& a, F& b, F& c, F& d) {
+  hn::Vec<Shorts> v[4];
+  hn::LoadInterleaved4(Shorts(), values, v[0], v[1], v[2], v[3]);
+  a = widened(v[0]);
+  b = widened(v[1]);
+  c = widened(v[2]);
+  d = widened(v[3]);
+}
+
 /// The edges of one slab along kAxis, a vector at a time.
 template <int kAxis, class Value>
 class VertexMaker {
@@ -245,6 +263,8 @@ HWY_INLINE void make_vertices_from(const MarchState& march, int k, const VertexF
 void make_vertices_wide(const MarchState& march, int k, const VertexFrame& frame, float* positions, float* normals) {
   if (march.bytes != nullptr)
     make_vertices_from<std::uint8_t>(march, k, frame, positions, normals);
+  else if (march.shorts != nullptr)
+    make_vertices_from<std::int16_t>(march, k, frame, positions, normals);
   else
     make_vertices_from<float>(march, k, frame, positions, normals);
 }

@@ -5,8 +5,10 @@
 #include <isolux/mc_extract.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <tuple>
+#include <utility>
 
 #include "build_mesh.h"
 #include "fields.h"
@@ -196,50 +198,79 @@ void on_every_instruction_set(const Body& body) {
 
 TEST(IsoExtractor, GivesTheSameBitsOnEveryInstructionSet) {
   // Rows of less and of more than a word, and of several vectors' words; floats, and whole numbers that are kept as
-  // bytes.
-  for (const Volume& volume : {noise(Index3(75, 20, 13), 21), noise(Index3(75, 20, 13), 22, 256),
-                               noise(Index3(60, 9, 5), 23, 3), noise(Index3(600, 5, 4), 24)}) {
+  // bytes or in 16 bits.
+  for (const Volume& volume :
+       {noise(Index3(75, 20, 13), 21), noise(Index3(75, 20, 13), 22, 256), noise(Index3(60, 9, 5), 23, 3),
+        noise(Index3(75, 20, 13), 25, 5000), noise(Index3(600, 5, 4), 24)}) {
     const ExtractSettings settings{.isovalue = volume.values(0, 0, 0)};
-    for (const IsoExtractor::Index index : {IsoExtractor::Index::kBricks, IsoExtractor::Index::kBricksAndBytes}) {
+    for (const IsoExtractor::Index index :
+         {IsoExtractor::Index::kBricks, IsoExtractor::Index::kBricksAndBytes, IsoExtractor::Index::kBricksAndShorts}) {
       const IndexedMesh expected = indexed(volume, settings, index);
       on_every_instruction_set([&] { EXPECT_TRUE(identical(expected, indexed(volume, settings, index))); });
     }
   }
 }
 
-TEST(IsoExtractor, ReadsBytesAndFloatsAlike) {
-  const Volume volume = noise(Index3(130, 21, 17), 5, 256);
-  IsoExtractor bytes(volume, {}, IsoExtractor::Index::kBricksAndBytes);
-  IsoExtractor floats(volume, {}, IsoExtractor::Index::kNone);
-  for (const OuterSide outer : {OuterSide::kLower, OuterSide::kHigher}) {
-    for (const float isovalue :
-         {-1e30f, -1.0f, 0.0f, 0.5f, 1.0f, 127.0f, 127.25f, 254.5f, 255.0f, 255.5f, 256.0f, 1e30f}) {
-      const ExtractSettings settings{.isovalue = isovalue, .outer = outer};
-      IndexedMesh a;
-      IndexedMesh b;
-      bytes.extract(settings, {}, a);
-      floats.extract(settings, {}, b);
-      EXPECT_TRUE(identical(a, b)) << isovalue;
+TEST(IsoExtractor, ReadsBytesShortsAndFloatsAlike) {
+  Volume bytes = noise(Index3(130, 21, 17), 5, 256);
+  Volume shorts = noise(Index3(130, 21, 17), 5, 65536);
+  for (float& value : shorts.values.values()) value -= 32768.0f;
+  for (const Volume* volume : {&bytes, &shorts}) {
+    const float low = volume == &bytes ? 0.0f : -32768.0f;
+    const float high = volume == &bytes ? 255.0f : 32767.0f;
+    IsoExtractor narrow(*volume, {}, IsoExtractor::Index::kBricksAndShorts);
+    IsoExtractor floats(*volume, {}, IsoExtractor::Index::kNone);
+    for (const OuterSide outer : {OuterSide::kLower, OuterSide::kHigher}) {
+      for (const float isovalue : {-1e30f, low - 1.0f, low, low + 0.5f, low + 1.0f, 127.0f, 127.25f, high - 0.5f, high,
+                                   high + 0.5f, high + 1.0f, 1e30f}) {
+        const ExtractSettings settings{.isovalue = isovalue, .outer = outer};
+        IndexedMesh a;
+        IndexedMesh b;
+        narrow.extract(settings, {}, a);
+        floats.extract(settings, {}, b);
+        EXPECT_TRUE(identical(a, b)) << isovalue;
+      }
     }
   }
 }
 
-TEST(WideKernels, CopyToBytesOnlyWhatIsAByte) {
+TEST(RowMarch, KeepsTheNarrowestCopyThatFits) {
+  Volume bytes = noise(Index3(40, 5, 6), 5, 256);
+  Volume shorts = bytes;
+  shorts.values(3, 2, 1) = -1.0f;
+  Volume floats = shorts;
+  floats.values(4, 2, 1) = 0.5f;
+  for (const auto& [volume, expected] : {std::pair(&bytes, "bytes"), {&shorts, "shorts"}, {&floats, "floats"}}) {
+    mc::RowMarch march(*volume);
+    march.keep_bytes(*volume, {});
+    march.keep_shorts(*volume, {});
+    EXPECT_STREQ(march.reads(), expected);
+  }
+}
+
+template <class Narrow>
+void expect_exact_copies(float low, float high, const auto& convert) {
   std::vector<float> values(1000);
-  for (std::size_t i = 0; i < values.size(); ++i) values[i] = float(i % 256);
-  std::vector<std::uint8_t> bytes(values.size());
+  for (std::size_t i = 0; i < values.size(); ++i) values[i] = i % 2 == 0 ? low + float(i) / 8.0f : high - float(i / 8);
+  for (float& value : values) value = std::floor(value);
+  std::vector<Narrow> narrow(values.size());
   on_every_instruction_set([&] {
-    ASSERT_TRUE(mc::to_bytes(values.data(), values.size(), bytes.data()));
-    for (std::size_t i = 0; i < values.size(); ++i) ASSERT_EQ(float(bytes[i]), values[i]);
+    ASSERT_TRUE(convert(values.data(), values.size(), narrow.data()));
+    for (std::size_t i = 0; i < values.size(); ++i) ASSERT_EQ(float(narrow[i]), values[i]);
     for (const std::size_t place : {std::size_t(0), std::size_t(17), values.size() - 1}) {
-      for (const float other : {-0.0f, -1.0f, 256.0f, 0.5f, 1e-30f, 3e9f, std::numeric_limits<float>::infinity(),
-                                std::numeric_limits<float>::quiet_NaN()}) {
+      for (const float other : {-0.0f, low - 1.0f, high + 1.0f, 0.5f, 1e-30f, 3e9f, -3e9f,
+                                std::numeric_limits<float>::infinity(), std::numeric_limits<float>::quiet_NaN()}) {
         std::vector<float> changed = values;
         changed[place] = other;
-        EXPECT_FALSE(mc::to_bytes(changed.data(), changed.size(), bytes.data())) << other << " at " << place;
+        EXPECT_FALSE(convert(changed.data(), changed.size(), narrow.data())) << other << " at " << place;
       }
     }
   });
+}
+
+TEST(WideKernels, CopyOnlyWhatANarrowTypeHolds) {
+  expect_exact_copies<std::uint8_t>(0.0f, 255.0f, mc::to_bytes);
+  expect_exact_copies<std::int16_t>(-32768.0f, 32767.0f, mc::to_shorts);
 }
 
 TEST(IsoExtractor, RefusesPlanesBeyondThirtyTwoBits) {

@@ -8,6 +8,7 @@
 #include <cstdlib>
 #include <limits>
 #include <new>
+#include <utility>
 
 #include "fields.h"
 
@@ -33,7 +34,7 @@ void operator delete(void* memory, std::size_t /*bytes*/, std::align_val_t /*ali
 namespace isolux {
 namespace {
 
-TEST(IsoExtractor, GoesOnWithoutTheCopyInBytes) {
+TEST(IsoExtractor, GoesOnWithoutANarrowCopy) {
   // 4.6 MB of bytes; bits, lists and the index take .6 at most, and the surface, a small cube's, next to nothing.
   const Volume volume = testing::sampled(Index3(180, 160, 160), {}, [](const Vec3& p) {
     return std::max({std::fabs(p.x - 90.0), std::fabs(p.y - 80.0), std::fabs(p.z - 80.0)}) < 7.0 ? 200.0 : 3.0;
@@ -42,15 +43,18 @@ TEST(IsoExtractor, GoesOnWithoutTheCopyInBytes) {
   IndexedMesh expected;
   IsoExtractor(volume).extract(settings, {}, expected);
   EXPECT_GT(expected.triangles.size(), 1000U);
-  refused = 0;
-  most = std::size_t(4) << 20;
-  IndexedMesh mesh;
-  EXPECT_NO_THROW(IsoExtractor(volume, {}, IsoExtractor::Index::kBricksAndBytes).extract(settings, {}, mesh));
-  most = std::numeric_limits<std::size_t>::max();
-  EXPECT_EQ(refused, 1);
-  EXPECT_EQ(mesh.positions, expected.positions);
-  EXPECT_EQ(mesh.normals, expected.normals);
-  EXPECT_EQ(mesh.triangles, expected.triangles);
+  using Index = IsoExtractor::Index;
+  for (const auto& [index, copies] : {std::pair(Index::kBricksAndBytes, 1), {Index::kBricksAndShorts, 2}}) {
+    refused = 0;
+    most = std::size_t(4) << 20;
+    IndexedMesh mesh;
+    EXPECT_NO_THROW(IsoExtractor(volume, {}, index).extract(settings, {}, mesh));
+    most = std::numeric_limits<std::size_t>::max();
+    EXPECT_EQ(refused, copies);
+    EXPECT_EQ(mesh.positions, expected.positions);
+    EXPECT_EQ(mesh.normals, expected.normals);
+    EXPECT_EQ(mesh.triangles, expected.triangles);
+  }
 }
 
 }  // namespace

@@ -38,7 +38,7 @@ void SurfaceMaker::extract(const ExtractSettings& settings, const Run& run, Inde
     mesh = indexed_mesh(extractor_->extract(*volume_, settings, run));
     return;
   }
-  if (!fast_) fast_.emplace(*volume_, run, IsoExtractor::Index::kBricksAndBytes);
+  if (!fast_) fast_.emplace(*volume_, run, IsoExtractor::Index::kBricksAndShorts);
   fast_->extract(settings, run, mesh);
 }
 

@@ -23,8 +23,8 @@ struct Surface {
 /// Makes one surface of a volume after the other. For one thread at a time.
 class SurfaceMaker {
  public:
-  /// With marching cubes ("" or "marching_cubes") through IsoExtractor, whose index is made with the first surface;
-  /// with other backends through the registry. \throw InvalidInput as Registry::create
+  /// With marching cubes ("" or "marching_cubes") through IsoExtractor, whose index and narrow copy are made with the
+  /// first surface; with other backends through the registry. \throw InvalidInput as Registry::create
   SurfaceMaker(std::shared_ptr<const Volume> volume, const Registry<Extractor>& extractors,
                const BackendChoice& choice);
 

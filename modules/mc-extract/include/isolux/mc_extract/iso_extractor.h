@@ -20,6 +20,9 @@ class IsoExtractor {
     /// The same, and a copy in bytes where all values are whole numbers from 0 to 255 and there is memory for it (else
     /// nothing more): a quarter of the volume's memory, for a sixth to a quarter less time an isovalue.
     kBricksAndBytes,
+    /// The same, and where bytes do not do a copy in 16 bits of whole numbers from -32768 to 32767: half of the
+    /// volume's memory, for a tenth to a sixth less time an isovalue.
+    kBricksAndShorts,
     /// Nothing: for a single isovalue.
     kNone
   };
