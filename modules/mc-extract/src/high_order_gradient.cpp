@@ -9,10 +9,10 @@ namespace isolux::mc {
 
 namespace {
 
-constexpr int kMost = 9;  ///< grid points of an axis
+constexpr int kLongest = 9;  ///< grid points of an axis
 /// Of fourth and sixth order; nine points from one side are about as good as seven round about.
 constexpr Stencil kFirst{.off_grid = 4, .on_grid = 5, .on_face = 5};
-constexpr Stencil kSecond{.off_grid = 6, .on_grid = 7, .on_face = kMost};
+constexpr Stencil kSecond{.off_grid = 6, .on_grid = 7, .on_face = kLongest};
 
 /// Differences of an order, over those two orders lower, at which the higher stencil is taken wholly and not at all. A
 /// wave of w radians a voxel has (2 sin(w/2))^2: 1 at six voxels a wave, 1.6 at four and a half; noise 3.4 and more.
@@ -28,8 +28,8 @@ constexpr double factorial(int n) { return n < 2 ? 1.0 : n * factorial(n - 1); }
 
 /// 1/((i - 0)(i - 1) ... (i - (count - 1))) without the factor i - i.
 constexpr auto kScale = [] {
-  std::array<std::array<double, kMost>, kMost + 1> scale{};
-  for (int count = 1; count <= kMost; ++count)
+  std::array<std::array<double, kLongest>, kLongest + 1> scale{};
+  for (int count = 1; count <= kLongest; ++count)
     for (int i = 0; i < count; ++i)
       scale[count][i] = ((count - 1 - i) % 2 == 0 ? 1.0 : -1.0) / (factorial(i) * factorial(count - 1 - i));
   return scale;
@@ -40,15 +40,15 @@ constexpr auto kScale = [] {
 struct HighOrderGradient::Weights {
   int first;
   int count;
-  std::array<double, kMost> value;
-  std::array<double, kMost> slope;
+  std::array<double, kLongest> value;
+  std::array<double, kLongest> slope;
   int only = -1;  ///< at a grid point: the one whose value counts
 
   /// Lagrange's polynomials and their derivatives at x, counted from the first point: each is a product of differences
   /// to the points before and to those after.
   void set(double x) {
-    std::array<double, kMost + 1> after;
-    std::array<double, kMost + 1> after_slope;
+    std::array<double, kLongest + 1> after;
+    std::array<double, kLongest + 1> after_slope;
     after[count] = 1.0;
     after_slope[count] = 0.0;
     for (int i = count - 1; i > 0; --i) {
@@ -131,11 +131,11 @@ HighOrderGradient::Smoothness HighOrderGradient::smoothness(const Vec3& index) c
   for (int a = 0; a < 3; ++a) nearest[a] = std::clamp(int(std::round(index[a])), 0, size_[a] - 1);
   const std::array<std::size_t, 3> steps = {1, std::size_t(size_.x), std::size_t(size_.x) * std::size_t(size_.y)};
   for (int a = 0; a < 3; ++a) {
-    int count = std::min(kMost, size_[a]);
+    int count = std::min(kLongest, size_[a]);
     Index3 first = nearest;
-    first[a] = std::clamp(nearest[a] - kMost / 2, 0, size_[a] - count);
+    first[a] = std::clamp(nearest[a] - kLongest / 2, 0, size_[a] - count);
     const float* values = field_.data() + field_.lattice().offset(first.x, first.y, first.z);
-    std::array<double, kMost> line;
+    std::array<double, kLongest> line;
     for (int i = 0; i < count; ++i) line[i] = values[std::size_t(i) * steps[a]];
     for (std::size_t order = 1; order <= 6 && count > 1; ++order) {
       --count;

@@ -10,7 +10,7 @@
 namespace isolux::mc {
 
 namespace {
-constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
+constexpr std::uint32_t kNoVertex = std::numeric_limits<std::uint32_t>::max();
 }
 
 SurfaceBuilder::SurfaceBuilder(const Volume& volume, const ExtractSettings& settings, SlabRange slabs)
@@ -19,10 +19,10 @@ SurfaceBuilder::SurfaceBuilder(const Volume& volume, const ExtractSettings& sett
       lattice_(volume.lattice()),
       level_set_(lattice_, settings),
       gradient_to_world_(lattice_.frame.gradient_to_world()) {
-  for (auto& plane : edge_vertices_) plane.assign(std::size_t(lattice_.size.x) * lattice_.size.y * 8, kNone);
+  for (auto& plane : edge_vertices_) plane.assign(std::size_t(lattice_.size.x) * lattice_.size.y * 8, kNoVertex);
 }
 
-void SurfaceBuilder::begin_slab(int k) { std::ranges::fill(edge_vertices_[(k + 1) & 1], kNone); }
+void SurfaceBuilder::begin_slab(int k) { std::ranges::fill(edge_vertices_[(k + 1) & 1], kNoVertex); }
 
 int SurfaceBuilder::inside_corners(const Index3& cell) const {
   int inside = 0;
@@ -33,7 +33,7 @@ int SurfaceBuilder::inside_corners(const Index3& cell) const {
 std::uint32_t SurfaceBuilder::edge_vertex(const Index3& low, int direction) {
   const std::size_t point = std::size_t(low.y) * lattice_.size.x + low.x;
   std::uint32_t& id = edge_vertices_[low.z & 1][point * 8 + direction];
-  if (id != kNone) return id;
+  if (id != kNoVertex) return id;
   const Index3 step(direction & 1, direction >> 1 & 1, direction >> 2);
   const float a = value(low);
   const float b = value(low + step);

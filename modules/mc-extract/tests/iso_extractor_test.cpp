@@ -251,7 +251,8 @@ TEST(RowMarch, KeepsTheNarrowestCopyThatFits) {
 template <class Narrow>
 void expect_exact_copies(float low, float high, const auto& convert) {
   std::vector<float> values(1000);
-  for (std::size_t i = 0; i < values.size(); ++i) values[i] = i % 2 == 0 ? low + float(i) / 8.0f : high - float(i / 8);
+  for (std::size_t i = 0; i < values.size(); ++i)
+    values[i] = i % 2 == 0 ? low + float(i) / 8.0f : high - std::floor(float(i) / 8.0f);
   for (float& value : values) value = std::floor(value);
   std::vector<Narrow> narrow(values.size());
   on_every_instruction_set([&] {

@@ -189,11 +189,11 @@ TEST(AccurateNormals, AreUnitVectorsWhateverTheVoxels) {
 TEST(AccurateNormals, StayCentralWhereThereIsNoGradient) {
   // Plateaus with steps between them: nothing is smooth, and beside one step all differences are as large.
   const Volume steps = sampled(Index3(24), {}, [](const Vec3& p) { return p.x < 11.5 ? 1.0 : 0.0; });
-  EXPECT_TRUE(identical(extract(steps, {.isovalue = 0.5f}),
-                        extract(steps, {.isovalue = 0.5f, .normals = NormalKind::kAccurate})));
+  EXPECT_TRUE(isolux::testing::identical(extract(steps, {.isovalue = 0.5f}),
+                                         extract(steps, {.isovalue = 0.5f, .normals = NormalKind::kAccurate})));
   const Volume small = noise(Index3(2, 3, 4), 5);
-  EXPECT_TRUE(identical(extract(small, {.isovalue = 0.5f}),
-                        extract(small, {.isovalue = 0.5f, .normals = NormalKind::kAccurate})));
+  EXPECT_TRUE(isolux::testing::identical(extract(small, {.isovalue = 0.5f}),
+                                         extract(small, {.isovalue = 0.5f, .normals = NormalKind::kAccurate})));
 }
 
 TEST(AccurateNormals, LeaveTheCapsCornersAlone) {
