@@ -105,6 +105,7 @@ const int kRegistered = [] {
       {"texels_64", {"texels", 1, 64, "direct", {}}},
       {"texels_128", {"texels", 1, 128, "direct", {}}},
       {"texels_16", {"texels", 1, 16, "direct", {}}},
+      {"texels_16_denoised", {"texels", 1, 16, "direct", {{"denoise", "true"}}}},
       {"plain_texels_64", {"texels", 1, 64, "direct", kPlain}},
       {"plain_texels_16", {"texels", 1, 16, "direct", kPlain}},
       {"plain_texels_512", {"texels", 1, 512, "direct", kPlain}},

@@ -17,7 +17,7 @@ namespace isolux {
 namespace {
 
 // Samples; the light decides which of them is wide enough.
-constexpr std::array<std::size_t, 3> kWindows = {57, 120, 200};
+constexpr std::array<std::size_t, 3> kWindows = {57, 120, 240};
 constexpr std::size_t kCoordinates = 10;                   // place, isovalue, normal, openness
 constexpr std::array<double, 3> kSteps = {1.0, 2.0, 4.0};  // of the openness, grid spacings
 // Of the whole range of isovalues in grid steps: a coordinate of the fit, hardly of the search.
@@ -29,6 +29,11 @@ constexpr std::size_t kAround = 15;    // where risks are averaged; more would b
 /// A site's own variance is known within this factor: on the whole it is right, but few rays that agree by chance, or
 /// because of where their strata lie, say less than there is.
 constexpr double kVarianceFactor = 4.0;
+/// Samples farther apart in light than so many standard errors are of two sides of an edge, and not fitted together.
+constexpr double kApart = 5.0;
+/// What reading between texels leaves of the noise of their own rays, which it averages (30 % of independent noise at
+/// random points, less of nets), and of what a fit misses or of its noise, which neighbours share, it leaves all.
+constexpr double kReadNoise = 0.25;
 
 class Denoiser {
  public:
@@ -96,12 +101,36 @@ class Denoiser {
     return at;
   }
 
+  [[nodiscard]] double variance_around(std::size_t s, const std::vector<Neighbour>& found) const {
+    double weights = 0.0;
+    double variance = 0.0;
+    for (const Neighbour& n : found) {
+      const double w = likeness(s, n.sample());
+      weights += w;
+      variance += w * double(samples_.variance[n.sample()]);
+    }
+    return variance / weights;
+  }
+
+  /// 1 where two samples differ by their noise at most, falling to 0 where by more than `apart`, a squared difference.
+  /// Steps of light so end a window that place and normals do not.
+  [[nodiscard]] double same_side(std::size_t a, std::size_t b, double apart) const {
+    double squares = 0.0;
+    for (std::size_t c = 0; c < channels_; ++c) {
+      const double d = double(samples_.radiance[a * channels_ + c]) - double(samples_.radiance[b * channels_ + c]);
+      squares += d * d / double(channels_);
+    }
+    const double ratio = squares / apart;
+    return 1.0 / (1.0 + ratio * ratio * ratio);
+  }
+
   void fit() {
     for (std::size_t w = 0; w < kWindows.size(); ++w) {
       smooth_[w].resize(samples_.radiance.size());
       follows_[w].resize(samples_.size());
     }
     for_each(kWindows.back(), [&](std::size_t s, const std::vector<Neighbour>& found) {
+      const double apart = kApart * kApart * variance_around(s, found) + kNothing;
       for (std::size_t w = 0; w < kWindows.size(); ++w) {
         const std::size_t count = std::min(kWindows[w], found.size());
         const double reach = 1.0001 * double(found[count - 1].reach());
@@ -109,8 +138,8 @@ class Denoiser {
         for (std::size_t n = 0; n < count; ++n) {
           const std::size_t other = found[n].sample();
           const double ratio = reach > 0.0 ? std::sqrt(double(found[n].reach()) / reach) : 0.0;
-          fit.add((1.0 - 0.75 * ratio) * likeness(s, other), coordinates(other, s),
-                  &samples_.radiance[other * channels_], channels_);
+          const double weight = (1.0 - 0.75 * ratio) * likeness(s, other) * same_side(s, other, apart);
+          fit.add(weight, coordinates(other, s), &samples_.radiance[other * channels_], channels_);
         }
         follows_[w][s] = float(std::min(1.0, fit.at_origin(kRidge, &smooth_[w][s * channels_], channels_)));
       }
@@ -166,7 +195,7 @@ class Denoiser {
     std::array<double, kWindows.size() + 1> shares{};
     double sum = 0.0;
     for (std::size_t k = 0; k <= kWindows.size(); ++k) {
-      double risk = noise;
+      double risk = kReadNoise * noise;
       if (k < kWindows.size()) {
         const double followed = follows[k] / weights;
         risk = std::max(spread[k] / weights - noise * (1.0 - 2.0 * followed), noise * followed);

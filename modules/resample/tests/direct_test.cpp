@@ -120,8 +120,9 @@ TEST(Direct, DenoisesSmoothLightAndKeepsItsEdges) {
   const auto denoised = errors("true");
   // Thirty samples average to a sixth of the noise; half of it is the claim.
   EXPECT_LT(denoised[0], 0.25 * plain[0]);
-  // A step of 2 spreads a hundred times what the noise does, so at most about a percent of it is taken for noise.
-  EXPECT_LT(std::sqrt(denoised[1]), std::sqrt(plain[1]) + 0.02);
+  // A step of 2, 35 times the noise's standard error, parts the windows: noise is taken out up to it. Half of a window
+  // averages as well as a few samples do everywhere else.
+  EXPECT_LT(denoised[1], 0.5 * plain[1]);
 }
 
 TEST(Direct, DenoisingLeavesExactSamplesAlone) {
