@@ -17,7 +17,7 @@ namespace isolux {
 namespace {
 
 // Samples; the light decides which of them is wide enough.
-constexpr std::array<std::size_t, 3> kWindows = {57, 120, 240};
+constexpr std::array<std::size_t, 3> kWindows = {57, 120, 200};
 constexpr std::size_t kCoordinates = 10;                   // place, isovalue, normal, openness
 constexpr std::array<double, 3> kSteps = {1.0, 2.0, 4.0};  // of the openness, grid spacings
 // Of the whole range of isovalues in grid steps: a coordinate of the fit, hardly of the search.
@@ -25,7 +25,7 @@ constexpr double kIsovalueLength = 2.0;
 constexpr double kUnitLength = 2.0;  // of normals and openness likewise
 constexpr double kRidge = 0.001;
 constexpr std::size_t kTouching = 13;  // a sample and those about it
-constexpr std::size_t kAround = 15;    // where risks are averaged; more would blur the choice near edges
+constexpr std::size_t kAround = 20;    // where risks are averaged; more would blur the choice near edges
 /// A site's own variance is known within this factor: on the whole it is right, but few rays that agree by chance, or
 /// because of where their strata lie, say less than there is.
 constexpr double kVarianceFactor = 4.0;
@@ -169,7 +169,8 @@ class Denoiser {
     return products;
   }
 
-  /// Of each window's light, and of the samples' own last: by the inverse cubes of their estimated mean squared errors.
+  /// Of each window's light, and of the samples' own last: by the inverse sixth powers of their estimated mean squared
+  /// errors.
   [[nodiscard]] std::array<double, kWindows.size() + 1> shares_of(std::size_t s, const std::vector<Neighbour>& found,
                                                                   const std::vector<float>& products) const {
     std::array<double, kWindows.size()> spread{};
@@ -200,7 +201,7 @@ class Denoiser {
         const double followed = follows[k] / weights;
         risk = std::max(spread[k] / weights - noise * (1.0 - 2.0 * followed), noise * followed);
       }
-      shares[k] = std::pow(risk + kNothing, -3.0);
+      shares[k] = std::pow(risk + kNothing, -6.0);
       sum += shares[k];
     }
     for (double& share : shares) share /= sum;

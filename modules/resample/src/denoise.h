@@ -11,9 +11,10 @@ namespace isolux {
 /// of several widths (Moon, Carr & Yoon, "Adaptive rendering based on weighted local regression", TOG 2014). Each one's
 /// mean squared error is estimated from what it leaves (Stein, "Estimation of the mean of a multivariate normal
 /// distribution", 1981), the noise being the part of that which neighbours do not share; the better share more in the
-/// result, and the samples themselves are one of the choices: shadow edges and thin walls stay. The same bits for any
-/// number of threads. Cost: some 20 microseconds of a thread a sample, 40 bytes. \throw InvalidInput as resample()
-/// does; Cancelled
+/// result, and the samples themselves are one of the choices, their noise counted as far as reading leaves it. Samples
+/// of two sides of an edge are not fitted together: shadow edges and thin walls stay. The same bits for any number of
+/// threads. Cost: some 32 microseconds of a thread a sample, 40 bytes. \throw InvalidInput as resample() does;
+/// Cancelled
 [[nodiscard]] SampleSet denoised(const Volume& volume, const SampleSet& samples, const Run& run);
 
 }  // namespace isolux
