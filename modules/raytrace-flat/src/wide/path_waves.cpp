@@ -20,6 +20,17 @@ void put_ray(Rays& rays, const Vec3f& origin, float isovalue, const Vec3& toward
   rays.isovalue[at] = isovalue;
 }
 
+/// Is a place on the ray outside the box?
+bool leaves_box(const Rays& rays, std::size_t ray, double t, const Vec3& last) {
+  for (int a = 0; a < 3; ++a) {
+    const double direction = double(rays.direction[a][ray]);
+    if (direction == 0.0) continue;
+    const double x = double(rays.origin[a][ray]) + t * direction;
+    if (x < 0.0 || x > last[a]) return true;
+  }
+  return false;
+}
+
 }  // namespace
 
 /// What a block's paths have come to.
@@ -205,11 +216,13 @@ void PathWaves::look(const SiteBlock& block, Wave& wave, std::vector<Sighting>& 
   static thread_local Rays rays(0);
   if (rays.capacity() < sightings.size()) rays = Rays(sightings.size());
   rays.count = 0;
+  // Whatever is in the way of a light outside the box is nearer than it: any hit will do.
   bool all_far = true;
+  const Vec3 last(block.field.size - 1);
   for (const Sighting& s : sightings) {
     const Path& path = wave.paths[s.path];
     put_ray(rays, path.position, path.isovalue, s.towards, aimer_.to_index());
-    all_far = all_far && s.distance == kInfinity;
+    all_far = all_far && leaves_box(rays, rays.count - 1, s.distance / double(aimer_.to_index().world_step), last);
   }
   trace(block.field, block.occupancy, block.inner, all_far ? Question::kAnyHit : Question::kFirstHit, rays, counters);
   for (std::size_t i = 0; i < rays.count; ++i) {
