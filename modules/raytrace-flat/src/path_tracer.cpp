@@ -43,7 +43,7 @@ Vec3 PathTracer::direct_light(const Vertex& vertex, const PathSampler& numbers, 
     const Vec3 world = field_.lattice().frame.world(vertex.position);
     for (const PreparedLight& light : lights_) {
       const UnitPair pair = numbers.pair(path, dimension++);
-      const auto sample = light.sample(world, pair.u, pair.v);
+      const auto sample = light.from(world).sample(pair.u, pair.v);
       if (!sample) continue;
       const double cosine = glm::dot(vertex.normal, sample->towards);
       if (cosine > 0.0 && is_visible(vertex, sample->towards, sample->distance, counters))

@@ -190,10 +190,14 @@ void PathWaves::direct_light(const SiteBlock& block, Wave& wave, TraceCounters& 
       sightings.push_back({std::uint32_t(i), towards, distance, path.throughput * light_a_cosine * cosine});
   };
   for (std::size_t light = 0; light < lights_.size(); ++light) {
+    LightView seen;
     for (std::size_t i = 0; i < wave.paths.size(); ++i) {
       const Path& path = wave.paths[i];
+      // The first rays of a site all see the light from there.
+      if (i == 0 || path.position != wave.paths[i - 1].position)
+        seen = lights_[light].from(frame.world(Vec3(path.position)));
       const UnitPair pair = numbers(wave, path, 2 + std::uint32_t(light));
-      const auto sample = lights_[light].sample(frame.world(Vec3(path.position)), pair.u, pair.v);
+      const auto sample = seen.sample(pair.u, pair.v);
       if (sample) consider(i, sample->towards, sample->distance, sample->weight * std::numbers::inv_pi);
     }
     look(block, wave, sightings, counters);
