@@ -82,7 +82,8 @@ TEST(LightByNeed, ReadsReflectionsFromTwelveTexelsAWave) {
   const Volume volume = read_volume("gen:gyroid:25");
   const BakeResult result = bake(volume, Scene{}, by_need(0.02, kAllBounces), builtin_stages(), isolux::Run{});
   EXPECT_LE(result.rmse_estimate, 0.02);
-  EXPECT_LT(difference_from_paths(volume, result.light, kAllBounces, 64), 0.026);
+  // The estimate is honest within a factor 1.3, as everywhere here.
+  EXPECT_LT(difference_from_paths(volume, result.light, kAllBounces, 64), 1.3 * 0.02);
 }
 
 TEST(LightByNeed, MatchesTheOpenIntegratingSphere) {
@@ -108,7 +109,8 @@ TEST(LightByNeed, MatchesTheOpenIntegratingSphere) {
     }
   }
   ASSERT_GT(count, 5000);
-  // Asked are .01, of all texels; a bias of reading reflected light from texels, most of them predicted, is in it.
+  // Asked are .01 of all texels; of these it is .0056 with a bias of -.0026, that of reading reflected light from
+  // texels most of which are predicted. Twice that is for other seeds.
   EXPECT_LT(std::sqrt(squares / count), 0.012);
   EXPECT_LT(std::fabs(sum / count), 0.005);
 }

@@ -242,6 +242,7 @@ void vtk_sweep(benchmark::State& state, const Subject& subject) {
   report_sweep(state, triangles);
 }
 #endif
+
 void add(const Subject& subject, const std::string& what, auto function) {
   for (const int threads : {1, 2})
     benchmark::RegisterBenchmark((std::string(subject.name) + "/" + what).c_str(),

@@ -101,6 +101,7 @@ class Denoiser {
     return at;
   }
 
+  /// Mean variance of like samples.
   [[nodiscard]] double variance_around(std::size_t s, const std::vector<Neighbour>& found) const {
     double weights = 0.0;
     double variance = 0.0;
@@ -176,12 +177,10 @@ class Denoiser {
     std::array<double, kWindows.size()> spread{};
     std::array<double, kWindows.size()> follows{};
     double weights = 0.0;
-    double variance = 0.0;
     double missed = 0.0;
     for (const Neighbour& n : found) {
       const double w = likeness(s, n.sample());
       weights += w;
-      variance += w * double(samples_.variance[n.sample()]);
       missed += w * double(products[n.sample()]);
       for (std::size_t k = 0; k < kWindows.size(); ++k) {
         follows[k] += w * double(follows_[k][n.sample()]);
@@ -192,7 +191,7 @@ class Denoiser {
       }
     }
     const double seen = (spread[0] - std::max(0.0, missed)) / (weights - std::min(follows[0], 0.9 * weights));
-    const double noise = std::clamp(seen, 0.0, kVarianceFactor * variance / weights);
+    const double noise = std::clamp(seen, 0.0, kVarianceFactor * variance_around(s, found));
     std::array<double, kWindows.size() + 1> shares{};
     double sum = 0.0;
     for (std::size_t k = 0; k <= kWindows.size(); ++k) {
