@@ -138,6 +138,8 @@ class BadScene(CommandLineTest):
             ('{"lights": [{"type": "lamp"}]}', "lights[0]"),
             ('{"lights": [{"type": "sphere", "center": [0, 0, 0], "radius": -1, "radiance": [1, 1, 1]}]}', "lights[0].radius"),
             ('{"lights": [{"type": "sun", "irradiance": [1, 1, 1]}]}', "'direction' is missing"),
+            ('{"lights": [{"type": "sun", "direction": [0, 0, 1], "irradiance": [1, 1, 1], "angular_diameter_deg": 120}]}',
+             "at most 90"),
             ('{"outer": "inner"}', "lower, higher"),
         ]
         for text, said in cases:

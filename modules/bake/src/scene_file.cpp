@@ -51,9 +51,9 @@ Light read_light(const json& value, const std::string& place) {
     object.require_keys({"type", "direction", "irradiance", "angular_diameter_deg"});
     SunLight sun{.direction = object.direction("direction"), .irradiance = object.colour("irradiance")};
     if (object.has("angular_diameter_deg")) sun.angular_diameter_deg = object.positive("angular_diameter_deg");
-    if (sun.angular_diameter_deg > 180.0f) {
-      throw InvalidInput(fmt::format("{}: {}; at most 180 is allowed", object.place("angular_diameter_deg"),
-                                     sun.angular_diameter_deg));
+    if (sun.angular_diameter_deg > kWidestSun) {
+      throw InvalidInput(fmt::format("{}: {}; at most {} is allowed", object.place("angular_diameter_deg"),
+                                     sun.angular_diameter_deg, kWidestSun));
     }
     return sun;
   }

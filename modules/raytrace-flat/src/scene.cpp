@@ -94,8 +94,9 @@ void require_valid_light(const Light& light) {
   if (const auto* sun = std::get_if<SunLight>(&light)) {
     require_direction("sun direction", sun->direction);
     require_colour("sun irradiance", sun->irradiance, kAnyBrightness);
-    if (!(sun->angular_diameter_deg >= 0.0f && sun->angular_diameter_deg <= 90.0f)) {
-      throw InvalidInput(fmt::format("sun angular_diameter_deg = {}: allowed is 0 to 90", sun->angular_diameter_deg));
+    if (!(sun->angular_diameter_deg >= 0.0f && sun->angular_diameter_deg <= kWidestSun)) {
+      throw InvalidInput(
+          fmt::format("sun angular_diameter_deg = {}: allowed is 0 to {}", sun->angular_diameter_deg, kWidestSun));
     }
   } else if (const auto* rectangle = std::get_if<RectangleLight>(&light)) {
     require_place("rectangle center", rectangle->center);

@@ -35,6 +35,8 @@ struct ImageEnvironment {
 
 using Environment = std::variant<UniformEnvironment, SkyEnvironment, ImageEnvironment>;
 
+inline constexpr float kWidestSun = 90.0f;  ///< SunLight::angular_diameter_deg at most
+
 /// Parallel light from a disc in the sky. `irradiance` is at normal incidence.
 struct SunLight {
   Vec3f direction{0.0f, 0.0f, 1.0f};  ///< towards the sun, world space, any length
