@@ -97,8 +97,11 @@ void report_bake(const BakeResult& result, Session& session) {
 
 /// What was done otherwise than asked for want of memory.
 void say_of_memory(const BakeResult& result, const Session& session) {
-  if (const auto it = result.skipped.find("links_beyond_memory"); it != result.skipped.end())
-    session.say(fmt::format("reflections are followed by paths: {} rays are too many to keep", it->second));
+  if (const auto it = result.skipped.find("links_beyond_memory"); it != result.skipped.end()) {
+    const char* instead =
+        result.sweeps == 0 ? "reflections are followed by paths" : "they are traced for the last reflection alone";
+    session.say(fmt::format("{} rays are too many to keep: {}", it->second, instead));
+  }
   if (result.skipped.contains("rounds_beyond_memory"))
     session.say("the error asked is not reached: more rays than can be kept; --bounce-method paths needs no memory");
 }

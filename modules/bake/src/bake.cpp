@@ -40,19 +40,20 @@ BakeResult bake_paths(const Volume& volume, const Scene& scene, const BakeSettin
   return result;
 }
 
-/// Rays of scattered sites that would be kept at first, if they are too many; else 0.
-std::uint64_t rays_too_many(const BakeSettings& settings, std::size_t sites) {
-  if (settings.bounce_method != BounceMethod::kIterated || !reads_means(settings)) return 0;
-  const int a_site = has_target(settings) ? kFirstRays : settings.trace.rays;
-  const std::uint64_t rays = std::uint64_t(sites) * std::uint64_t(std::max(a_site, 1));
-  return rays > most_kept_rays(settings) ? rays : 0;
+/// Whether sites are so many that not even a few rays of each can be kept.
+bool keeps_too_few(const BakeSettings& settings, std::size_t sites) {
+  return settings.bounce_method == BounceMethod::kIterated &&
+         kept_rays_a_site(settings, sites, std::max(settings.trace.rays, 1)) == 0;
 }
 
 /// Without bounces kept rays see what the wide tracer sees, unless that one aims at light sources or at the bright
 /// parts of an image.
-bool keeps_rays(const BakeSettings& settings, const Scene& scene) {
+bool keeps_rays(const BakeSettings& settings, const Scene& scene, std::size_t sites) {
   const bool aims = !scene.lights.empty() || std::holds_alternative<ImageEnvironment>(scene.environment);
-  if (settings.bounce_method == BounceMethod::kIterated) return !has_target(settings) || scene.lights.empty();
+  // Rays can be doubled only where all are kept.
+  if (settings.bounce_method == BounceMethod::kIterated)
+    return !has_target(settings) ||
+           (scene.lights.empty() && kept_rays_a_site(settings, sites, kFirstRays) == kFirstRays);
   return has_target(settings) && settings.trace.bounces == 0 && settings.tracer.name == "wide" && !aims;
 }
 
@@ -85,13 +86,13 @@ BakeResult bake_side(const Volume& volume, const Scene& scene, const BakeSetting
     const auto by_need = settings.sampler.name == "texels" ? bake_by_need : bake_scattered_by_need;
     return by_need(volume, scene, settings, stages, run);
   }
-  if (const std::uint64_t rays = rays_too_many(settings, found.sites.size()); rays > 0) {
-    found.begun.skipped["links_beyond_memory"] = rays;
+  if (keeps_too_few(settings, found.sites.size())) {
+    found.begun.skipped["links_beyond_memory"] = std::uint64_t(found.sites.size()) * std::uint64_t(settings.trace.rays);
     BakeSettings by_paths = settings;
     by_paths.bounce_method = BounceMethod::kPaths;
     return bake_side(volume, scene, by_paths, std::move(found), stages, run);
   }
-  if (keeps_rays(settings, scene))
+  if (keeps_rays(settings, scene, found.sites.size()))
     return KeptRays(volume, scene, settings, std::move(found), stages, run).light(scene, run);
   if (!has_target(settings)) return bake_paths(volume, scene, settings, std::move(found), stages, run);
   double pilot_seconds = 0.0;

@@ -6,6 +6,7 @@
 #include <isolux/resample/fill_unlit.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <utility>
 
@@ -48,6 +49,14 @@ SiteRequest site_request(const BakeSettings& settings, const Lattice& texels, Ou
           .isovalues = settings.isovalues,
           .outer = outer,
           .gradient = settings.trace.gradient};
+}
+
+int kept_rays_a_site(const BakeSettings& settings, std::size_t sites, int rays) {
+  constexpr int kFewest = 4;
+  const std::uint64_t room = most_kept_rays(settings) / std::max<std::uint64_t>(sites, 1);
+  if (std::uint64_t(rays) <= room) return rays;
+  const int kept = int(std::bit_floor(room));
+  return kept < kFewest ? 0 : kept;
 }
 
 void finish_bake(const Volume& volume, const SampleSet& samples, const Resampler& resampler, const Lattice& texels,

@@ -36,7 +36,12 @@ KeptRays::KeptRays(const Volume& volume, const Scene& scene, const BakeSettings&
     throw InvalidInput("rays are kept of one side; a scene that lights both sides is one for bake()");
   resampler_ = stages.resamplers.create(settings_.resampler.name, settings_.resampler.settings);
   const Stopwatch watch;
-  const LinkSettings request{.rays = has_target(settings_) ? kFirstRays : settings_.trace.rays,
+  const int rays = has_target(settings_) ? kFirstRays : settings_.trace.rays;
+  const int kept = has_target(settings_) ? rays : kept_rays_a_site(settings_, found.sites.size(), rays);
+  if (kept < rays)
+    begun_.skipped["links_beyond_memory"] = std::uint64_t(found.sites.size()) * std::uint64_t(rays - kept);
+  const LinkSettings request{.rays = rays,
+                             .kept = kept < rays ? kept : 0,
                              .outer = scene.outer,
                              .ends = settings_.trace.bounces == 0 ? LinkEnds::kDropped : LinkEnds::kKept,
                              .texels = texels_,
@@ -46,7 +51,7 @@ KeptRays::KeptRays(const Volume& volume, const Scene& scene, const BakeSettings&
   if (!reads_means(settings_)) return;
   const double a_texel = settings_.isovalues ? sites_a_texel(volume.lattice(), texels_, settings_)
                                              : double(links_->sites().size()) / double(texels_.count());
-  one_of_ = std::max<std::size_t>(1, std::size_t(a_texel / kSitesEnough));
+  one_of_ = std::max<std::size_t>(1, std::size_t(a_texel / kSitesEnough * double(kept) / double(rays)));
 }
 
 IlluminationGrid KeptRays::between_reflections(const SampleSet& samples, const Run& run) {
@@ -63,7 +68,8 @@ Solution KeptRays::solve(const Scene& scene, const Run& run, BakeResult& result)
   Solution solution = links_->solve(
       scene, settings, [&](const SampleSet& samples) { return between_reflections(samples, run); }, run, last_);
   last_ = solution.samples.radiance;
-  result.seconds["bounces"] += watch.seconds();
+  trace_seconds_ += solution.trace_seconds;
+  result.seconds["bounces"] += watch.seconds() - solution.trace_seconds;
   result.sweeps += solution.sweeps;
   return solution;
 }
@@ -82,7 +88,7 @@ std::vector<std::uint32_t> KeptRays::wanting(const Solution& solution, double so
     budget.rays = left * double(rays()) / std::max(trace_seconds_, 1e-9);
     if (budget.rays < 0.02 * double(rays())) return {};
   }
-  if (reads_means(settings_)) {
+  if (settings_.trace.bounces != 0) {
     const double room = double(most_kept_rays(settings_)) - double(rays());
     if (room < 0.02 * double(rays())) return {};
     budget.rays = std::min(budget.rays, room);
@@ -105,14 +111,15 @@ BakeResult KeptRays::light(const Scene& scene, const Run& run) {
   }
   result.seconds["trace"] = trace_seconds_;
   result.counters = links_->counters();
-  result.counters.rays += solution.counters.rays;
+  add(result.counters, solution.counters);
   const auto rays = links_->rays();
   const auto [least, most] = std::minmax_element(rays.begin(), rays.end());
   result.least_rays = *least;
   result.most_rays = *most;
   result.link_bytes = links_->bytes();
   const bool missed = settings_.target_rmse > 0.0 && standard_error(solution.samples.variance) > settings_.target_rmse;
-  if (reads_means(settings_) && missed && !(settings_.target_seconds > 0.0)) result.skipped["rounds_beyond_memory"] = 1;
+  if (settings_.trace.bounces != 0 && missed && !(settings_.target_seconds > 0.0))
+    result.skipped["rounds_beyond_memory"] = 1;
   finish_bake(volume_, solution.samples, *resampler_, texels_, settings_, run, result);
   return result;
 }

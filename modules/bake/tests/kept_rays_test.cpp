@@ -164,6 +164,31 @@ TEST(KeptRays, ChangeTheSceneWithoutRays) {
     EXPECT_NEAR(changed.light.values[i], fresh.light.values[i], 0.01f);
 }
 
+TEST(KeptRays, EndWhereMemoryDoes) {
+  const Volume volume = read_volume("gen:gyroid:17");
+  constexpr std::uint64_t kSites = 16 * 16 * 16;
+  const BakeResult all = bake(volume, half_sky(), {}, builtin_stages(), isolux::Run{});
+  ASSERT_EQ(all.most_rays, 64u);
+  EXPECT_FALSE(all.skipped.contains("links_beyond_memory"));
+  BakeSettings settings;
+  settings.most_link_bytes = 4 * kSites * 17;
+  const BakeResult some = bake(volume, half_sky(), settings, builtin_stages(), isolux::Run{});
+  EXPECT_EQ(some.skipped.at("links_beyond_memory"), kSites * (64 - 16));
+  EXPECT_EQ(some.counters.rays, all.counters.rays);
+  EXPECT_LT(some.link_bytes, all.link_bytes / 2);
+  double squares = 0.0;
+  for (std::size_t i = 0; i < all.light.values.size(); ++i)
+    squares += std::pow(double(all.light.values[i]) - double(some.light.values[i]), 2.0);
+  // What 16 rays are noisier by, seen through the ends of 64: .3 / sqrt(16) / sqrt(64), less for their nets.
+  EXPECT_LT(std::sqrt(squares / double(all.light.values.size())), 0.01);
+  // Towards an error rays cannot be doubled then, but they can still be counted out beforehand.
+  settings.most_link_bytes = 4 * kSites * 15;
+  settings.target_rmse = 0.02;
+  const BakeResult counted = bake(volume, half_sky(), settings, builtin_stages(), isolux::Run{});
+  EXPECT_EQ(counted.least_rays, counted.most_rays);
+  EXPECT_LT(counted.rmse_estimate, 0.025);
+}
+
 TEST(KeptRays, EndInTime) {
   const Volume volume = read_volume("gen:gyroid:17");
   BakeSettings settings;

@@ -169,15 +169,20 @@ TEST(ScatteredLinks, SayWhereMemoryEnds) {
   const Volume volume = read_volume("gen:gyroid:9");
   const Scene scene = grey(0.8f, 0.0f, 1.0f);
   BakeSettings settings = fitted(8, kAllBounces);
-  settings.most_link_bytes = 4 * 8 * 8 * 512 - 1;  // eight sites a texel, eight rays each
+  constexpr std::uint64_t kBytesARay = 4 * 8 * 512;  // of each site, eight a texel
+  settings.most_link_bytes = 4 * kBytesARay - 1;
   const BakeResult paths = lit(volume, scene, settings);
   EXPECT_EQ(paths.sweeps, 0);
   EXPECT_EQ(paths.skipped.at("links_beyond_memory"), 8u * 8u * 512u);
   EXPECT_EQ(paths.light.values, lit(volume, scene, by_paths(fitted(8, kAllBounces))).light.values);
   ++settings.most_link_bytes;
-  EXPECT_GT(lit(volume, scene, settings).sweeps, 0);
+  const BakeResult half = lit(volume, scene, settings);
+  EXPECT_GT(half.sweeps, 0);
+  EXPECT_EQ(half.skipped.at("links_beyond_memory"), 4u * 8u * 512u);
+  settings.most_link_bytes = 8 * kBytesARay;
+  EXPECT_FALSE(lit(volume, scene, settings).skipped.contains("links_beyond_memory"));
   settings.target_rmse = 0.001;
-  settings.most_link_bytes = 4 * 8 * 40 * 512;
+  settings.most_link_bytes = 40 * kBytesARay;
   const BakeResult stopped = lit(volume, scene, settings);
   EXPECT_EQ(stopped.skipped.at("rounds_beyond_memory"), 1u);
   EXPECT_GT(stopped.rmse_estimate, 0.001);

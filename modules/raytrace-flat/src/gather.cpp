@@ -2,6 +2,7 @@
 #include <isolux/core/error.h>
 #include <isolux/raytrace_flat/gather.h>
 
+#include <algorithm>
 #include <mutex>
 
 #include "prefetch_sites.h"
@@ -21,10 +22,14 @@ TraceCounters gather(const Volume& volume, const Sites& sites, const GatherSetti
   if (!settings.keys.empty() && settings.keys.size() != sites.size())
     throw InvalidInput(
         fmt::format("{} keys for {} sites; there must be one of each", settings.keys.size(), sites.size()));
-  if (settings.nets == RayNets::kInterleaved && (settings.first_ray > 0 || !settings.keys.empty()))
-    throw InvalidInput("interleaved nets go without keys and from the first ray on");
-  const wide::Aimer aimer(volume.lattice().frame, run.seed, std::size_t(settings.rays), std::size_t(settings.first_ray),
-                          settings.nets, sites);
+  const int last = settings.first_ray + settings.rays;
+  if (settings.nets == RayNets::kInterleaved &&
+      ((settings.first_ray > 0 && last > settings.all_rays) || !settings.keys.empty()))
+    throw InvalidInput("interleaved nets go without keys, and from the first ray on or in parts of all_rays");
+  const wide::RayRange range{.first = std::size_t(settings.first_ray),
+                             .count = std::size_t(settings.rays),
+                             .all = std::size_t(std::max(settings.all_rays, 0))};
+  const wide::Aimer aimer(volume.lattice().frame, run.seed, range, settings.nets, sites);
   const wide::BlockRequest request{
       .outer = settings.outer, .rays_per_site = aimer.rays(), .sites_per_block = wide::sites_per_batch(aimer.rays())};
   const auto question = settings.question == RayQuestion::kAnyHit ? wide::Question::kAnyHit : wide::Question::kFirstHit;

@@ -1,31 +1,20 @@
 #include <fmt/format.h>
-#include <hwy/cache_control.h>
 #include <isolux/core/error.h>
-#include <isolux/core/parallel.h>
+#include <isolux/core/stopwatch.h>
 #include <isolux/raytrace_flat/light_links.h>
 
 #include <algorithm>
-#include <limits>
+#include <bit>
 #include <map>
 #include <numeric>
 #include <optional>
 #include <utility>
 
 #include "link_solver.h"
-#include "prefetch_sites.h"
-#include "ray_values.h"
-#include "wide/aimer.h"
+#include "ray_sums.h"
 #include "wide/net_mean.h"
 
 namespace isolux {
-namespace {
-
-void prefetch(const SampleSet& samples, std::size_t site) {
-  hwy::Prefetch(&samples.radiance[site * std::size_t(samples.channels)]);
-  hwy::Prefetch(&samples.variance[site]);
-}
-
-}  // namespace
 
 LightLinks::LightLinks(const Volume& volume, Sites sites, const LinkSettings& settings, const Run& run)
     : LightLinks(volume, std::move(sites), settings, run, WithoutProbes{}) {
@@ -34,14 +23,14 @@ LightLinks::LightLinks(const Volume& volume, Sites sites, const LinkSettings& se
     rounds_->targets = std::make_shared<const LinkTargets>(volume, sites_, texels, run);
   if (settings.ends == LinkEnds::kAtTexels)
     rounds_->targets = std::make_shared<const LinkTargets>(volume, texels, LinkTargets::Weights::kByIsovalue, run);
-  trace(0, std::size_t(settings.rays), {}, run);
+  trace(0, first_rays(), {}, run);
   probes_ = wide::choose_probes(sites_);
   Run other = run;
   other.seed = wide::probe_seed(run.seed);
   other.progress = {};
   again_.reset(new LightLinks(volume, wide::sites_of(sites_, probes_), settings, other, WithoutProbes{}));
   again_->rounds_->targets = rounds_->targets;
-  again_->trace(0, std::size_t(settings.rays), {}, other);
+  again_->trace(0, first_rays(), {}, other);
   add(counters_, again_->counters_);
 }
 
@@ -53,6 +42,12 @@ LightLinks::LightLinks(const Volume& volume, Sites sites, const LinkSettings& se
       rays_(sites_.size(), std::uint32_t(std::max(0, settings.rays))),
       rounds_(std::make_unique<Rounds>()) {
   if (settings.rays < 1) throw InvalidInput(fmt::format("rays = {}: allowed is 1 and more", settings.rays));
+  const int kept = settings.kept;
+  if (kept < 0 || kept > settings.rays || !std::has_single_bit(unsigned(std::max(kept, 1))))
+    throw InvalidInput(fmt::format("kept = {}: allowed are 0 and powers of two up to rays ({})", kept, settings.rays));
+  if (kept == settings.rays) settings_.kept = 0;
+  if (settings_.kept != 0 && settings.ends == LinkEnds::kDropped)
+    throw InvalidInput("rays whose ends are dropped are all kept");
 }
 
 LightLinks::~LightLinks() = default;
@@ -60,14 +55,28 @@ LightLinks::~LightLinks() = default;
 void LightLinks::trace(std::size_t first, std::size_t rays, std::span<const std::uint32_t> numbers, const Run& run) {
   Run own = run;
   own.seed = seed_;
+  rounds_->all.push_back(
+      trace_round(volume_, sites_, numbers, rounds_->targets.get(), request(first, rays), own, counters_));
+}
+
+RoundRequest LightLinks::request(std::size_t first, std::size_t rays) const {
   const auto question = settings_.ends == LinkEnds::kDropped ? RayQuestion::kAnyHit : RayQuestion::kFirstHit;
-  const RoundRequest request{
-      .first = first, .rays = rays, .outer = settings_.outer, .question = question, .nets = settings_.nets};
-  rounds_->all.push_back(trace_round(volume_, sites_, numbers, rounds_->targets.get(), request, own, counters_));
+  return {.first = first,
+          .rays = rays,
+          .all_rays = std::size_t(settings_.rays),
+          .outer = settings_.outer,
+          .question = question,
+          .nets = settings_.nets};
+}
+
+void LightLinks::require_open(const char* what) const {
+  if (settings_.nets == RayNets::kInterleaved)
+    throw InvalidInput(fmt::format("links of interleaved nets take no more {}", what));
+  if (settings_.kept != 0) throw InvalidInput(fmt::format("links of which a part is kept take no more {}", what));
 }
 
 void LightLinks::extend(std::span<const std::uint32_t> sites, const Run& run) {
-  if (settings_.nets == RayNets::kInterleaved) throw InvalidInput("links of interleaved nets take no more rays");
+  require_open("rays");
   std::map<std::uint32_t, std::vector<std::uint32_t>> by_rays;
   for (const std::uint32_t site : sites) by_rays[rays_[site]].push_back(site);
   for (const auto& [rays, numbers] : by_rays) {
@@ -88,7 +97,7 @@ void LightLinks::extend(std::span<const std::uint32_t> sites, const Run& run) {
 void LightLinks::append(const Sites& more, const Run& run) {
   if (settings_.ends == LinkEnds::kKept)
     throw InvalidInput("links that know the sites at the texels take no more sites");
-  if (settings_.nets == RayNets::kInterleaved) throw InvalidInput("links of interleaved nets take no more sites");
+  require_open("sites");
   if (more.size() == 0) return;
   std::vector<std::uint32_t> numbers(more.size());
   std::iota(numbers.begin(), numbers.end(), std::uint32_t(sites_.size()));
@@ -118,9 +127,8 @@ SampleSet LightLinks::lamp_light(const Scene& scene, const SolveSettings& settin
                                  const Run& run) const {
   SampleSet samples;
   samples.channels = is_grey(scene) ? 1 : 3;
-  samples.radiance.resize(sites_.size() * std::size_t(samples.channels));
-  samples.variance.resize(sites_.size());
   if (scene.lights.empty()) return samples;
+  samples.radiance.resize(sites_.size() * std::size_t(samples.channels));
   Scene lamps = scene;
   lamps.environment = UniformEnvironment{Vec3f(0.0f)};
   lamps.emission = {.keys = {{0.0f, Vec3f(0.0f)}}};
@@ -135,59 +143,20 @@ SampleSet LightLinks::lamp_light(const Scene& scene, const SolveSettings& settin
   return samples;
 }
 
-void LightLinks::add_up(const Scene& scene, const SampleSet& lamps, const TargetLight& e,
-                        std::span<const std::uint32_t> places, SampleSet& samples, const Run& run) const {
-  const auto channels = std::size_t(lamps.channels);
-  const RayValues brought(scene, e);
-  samples.sites = sites_;
-  samples.channels = lamps.channels;
-  samples.radiance.assign(lamps.radiance.size(), 0.0f);
-  samples.variance.assign(lamps.variance.size(), 0.0f);
-  const RayNets nets = brought.wants_directions() ? settings_.nets : RayNets::kIndependent;
-  for (const LinkRound& round : rounds_->all) {
-    const wide::Aimer aimer(volume_.lattice().frame, seed_, round.rays, round.first, nets, sites_);
-    parallel_blocks(round.blocks.size(), kBlocksATask, run, "", [&](const Block& task) {
-      RayValues::Scratch scratch(round.rays);
-      wide::Batch batch;
-      batch.clear(round.rays);
-      for (std::size_t b = task.begin; b < task.end; ++b) {
-        const LinkBlock& block = round.blocks[b];
-        for (std::size_t place = 0; place < block.sites.size(); ++place) {
-          if (places.empty() && place + kSitesAhead < block.sites.size()) {
-            prefetch(sites_, block.sites[place + kSitesAhead]);
-            prefetch(samples, block.sites[place + kSitesAhead]);
-          }
-          const std::size_t site = block.sites[place];
-          if (!places.empty() && places[site] == kLeftOut) continue;
-          auto known = brought.known_moments(round, block, place, sites_.isovalues[site]);
-          if (!known) {
-            // The directions are a function of seed and site: they are made again, not kept.
-            batch.rays.count = 0;
-            if (brought.wants_directions()) aimer.append(sites_, site, batch.rays, batch.world);
-            const auto& world = batch.world.axis;
-            known = brought.moments(round, block, place, sites_.isovalues[site],
-                                    {world[0].data(), world[1].data(), world[2].data()}, scratch);
-          }
-          const wide::NetMean::Moments& moments = *known;
-          for (std::size_t c = 0; c < channels; ++c) {
-            samples.radiance[site * channels + c] += float(moments.sum[int(c)]);
-            samples.variance[site] += float(moments.differences[int(c)] / double(channels));
-          }
-        }
-      }
-    });
-  }
-  for (std::size_t site = 0; site < sites_.size(); ++site) {
-    const auto n = float(rays_[site]);
-    const bool is_lit = sites_.normals[site] != Vec3f(0.0f);
-    for (std::size_t c = 0; c < channels; ++c) {
-      float& value = samples.radiance[site * channels + c];
-      value = is_lit ? value / n + lamps.radiance[site * channels + c] : 0.0f;
-    }
-    float& variance = samples.variance[site];
-    variance = is_lit && n > 1.0f ? variance / (2.0f * (n - 1.0f) * n) + lamps.variance[site]
-                                  : std::numeric_limits<float>::max();
-  }
+RayCounts LightLinks::kept_rays() const {
+  if (settings_.kept == 0) return {.each = rays_};
+  return {.same = std::uint32_t(settings_.kept)};
+}
+
+LinkAim LightLinks::aim() const {
+  return {.seed = seed_, .all_rays = std::size_t(settings_.rays), .nets = settings_.nets};
+}
+
+SampleSet LightLinks::straight(const Scene& scene, const SampleSet& lamps, std::span<const std::uint32_t> places,
+                               const Run& run) const {
+  RaySums sums(volume_, sites_, scene, {.channels = std::size_t(lamps.channels)}, aim(), places);
+  for (const LinkRound& round : rounds_->all) sums.add(round, run);
+  return sums.means(kept_rays(), lamps);
 }
 
 Solution LightLinks::direct(const Scene& scene, const SolveSettings& settings, const Run& run) const {
@@ -207,12 +176,31 @@ SampleSet LightLinks::reflecting(const Scene& scene, std::span<const float> texe
 
 void LightLinks::reflect_last(const Scene& scene, const SampleSet& lamps, const TargetLight& light,
                               const SolveSettings& settings, Solution& solution, const Run& run) const {
-  add_up(scene, lamps, light, {}, solution.samples, run);
+  solution.samples = reflected(scene, lamps, light, solution, run);
+  solution.samples.sites = sites_;
   if (again_ == nullptr) return;
   // The probes see the same light with other rays.
-  SampleSet again;
-  again_->add_up(scene, again_->lamp_light(scene, settings, solution.counters, run), light, {}, again, run);
+  Run quiet = run;
+  quiet.progress = {};
+  const SampleSet others = again_->lamp_light(scene, settings, solution.counters, quiet);
+  const SampleSet again = again_->reflected(scene, others, light, solution, quiet);
   wide::calibrate_variance(solution.samples, probes_, again, rays_);
+}
+
+SampleSet LightLinks::reflected(const Scene& scene, const SampleSet& lamps, const TargetLight& light,
+                                Solution& solution, const Run& run) const {
+  RaySums sums(volume_, sites_, scene, light, aim());
+  for (const LinkRound& round : rounds_->all) sums.add(round, run);
+  if (settings_.kept == 0) return sums.means({.each = rays_}, lamps);
+  const Stopwatch watch;
+  Run own = run;
+  own.seed = seed_;
+  const LinkRound round = empty_round(std::size_t(settings_.kept), std::size_t(settings_.rays - settings_.kept));
+  const wide::Aimer aimer = sums.aimer(round);
+  add(solution.counters, trace_links(volume_, sites_, {}, rounds_->targets.get(), request(round.first, round.rays),
+                                     round, own, [&](LinkBlock&& block) { sums.add(round, aimer, block); }));
+  solution.trace_seconds += watch.seconds();
+  return sums.means({.each = rays_}, lamps);
 }
 
 Solution LightLinks::solve(const Scene& scene, const SolveSettings& settings, const ToGrid& to_grid, const Run& run,
@@ -232,10 +220,7 @@ Solution LightLinks::solve(const Scene& scene, const SolveSettings& settings, co
   const bool some = settings.bounces == kAllBounces && settings.one_of > 1 && !rounds_->targets->are_sites();
   std::vector<std::uint32_t> places;
   if (some) places = Solver::places_of_some(sites_.size(), settings.one_of);
-  SampleSet straight;
-  add_up(scene, lamps, {.channels = std::size_t(lamps.channels)}, places, straight, run);
-  Solver solver(*this, scene, straight, std::move(places), to_grid, run);
-  straight = {};  // as large as the solution will be
+  Solver solver(*this, scene, straight(scene, lamps, places, run), std::move(places), to_grid, run);
   reflect_last(scene, lamps, solver.before_last(settings, start, solution), settings, solution, run);
   return solution;
 }

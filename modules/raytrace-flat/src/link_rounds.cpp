@@ -108,15 +108,18 @@ class BlockMaker {
 
 }  // namespace
 
-LinkRound trace_round(const Volume& volume, const Sites& sites, std::span<const std::uint32_t> numbers,
-                      const LinkTargets* targets, const RoundRequest& request, const Run& run,
-                      TraceCounters& counters) {
-  // A net's points beyond the first ones are those with some bits flipped: the same order.
-  const wide::NetMean mean(wide::SobolPoints(request.rays), request.rays);
-  LinkRound round{.first = request.first, .rays = request.rays, .order = mean.order(), .blocks = {}};
+LinkRound empty_round(std::size_t first, std::size_t rays) {
+  const wide::NetMean mean(wide::SobolPoints(first + rays), rays, first);
+  return {.first = first, .rays = rays, .order = mean.order(), .blocks = {}};
+}
+
+TraceCounters trace_links(const Volume& volume, const Sites& sites, std::span<const std::uint32_t> numbers,
+                          const LinkTargets* targets, const RoundRequest& request, const LinkRound& round,
+                          const Run& run, const LinkSink& sink) {
   const GatherSettings settings{.rays = int(request.rays),
                                 .outer = request.outer,
                                 .question = request.question,
+                                .all_rays = int(request.all_rays),
                                 .first_ray = int(request.first),
                                 .keys = numbers,
                                 .nets = request.nets};
@@ -127,9 +130,16 @@ LinkRound trace_round(const Volume& volume, const Sites& sites, std::span<const 
     some.normals.push_back(sites.normals[site]);
   }
   const BlockMaker maker(sites, numbers, targets, request.question, round, run.seed);
+  return gather(volume, numbers.empty() ? sites : some, settings, run,
+                [&](const GatheredRays& gathered) { sink(maker.make(gathered)); });
+}
+
+LinkRound trace_round(const Volume& volume, const Sites& sites, std::span<const std::uint32_t> numbers,
+                      const LinkTargets* targets, const RoundRequest& request, const Run& run,
+                      TraceCounters& counters) {
+  LinkRound round = empty_round(request.first, request.rays);
   std::mutex adding;
-  add(counters, gather(volume, numbers.empty() ? sites : some, settings, run, [&](const GatheredRays& gathered) {
-        LinkBlock block = maker.make(gathered);
+  add(counters, trace_links(volume, sites, numbers, targets, request, round, run, [&](LinkBlock&& block) {
         const std::scoped_lock lock(adding);
         round.blocks.push_back(std::move(block));
       }));

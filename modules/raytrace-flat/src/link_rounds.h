@@ -70,13 +70,25 @@ struct LinkRound {
 struct RoundRequest {
   std::size_t first = 0;
   std::size_t rays = 0;
+  std::size_t all_rays = 0;  ///< GatherSettings::all_rays
   OuterSide outer = OuterSide::kLower;
   RayQuestion question = RayQuestion::kFirstHit;  ///< kAnyHit: which rays hit is kept, not where
   RayNets nets = RayNets::kIndependent;
 };
 
+/// A round of which nothing is traced yet.
+[[nodiscard]] LinkRound empty_round(std::size_t first, std::size_t rays);
+
+/// What becomes of the links of some sites that were traced together. Called from many threads, each site in one block.
+using LinkSink = std::function<void(LinkBlock&& block)>;
+
 /// Traces rays of those of the sites that `numbers` lists (all if empty). `targets` may be null where only hits are
-/// asked for.
+/// asked for. `round` is empty_round() of the request.
+[[nodiscard]] TraceCounters trace_links(const Volume& volume, const Sites& sites,
+                                        std::span<const std::uint32_t> numbers, const LinkTargets* targets,
+                                        const RoundRequest& request, const LinkRound& round, const Run& run,
+                                        const LinkSink& sink);
+/// The same, kept.
 [[nodiscard]] LinkRound trace_round(const Volume& volume, const Sites& sites, std::span<const std::uint32_t> numbers,
                                     const LinkTargets* targets, const RoundRequest& request, const Run& run,
                                     TraceCounters& counters);

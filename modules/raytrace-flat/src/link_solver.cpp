@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "anderson.h"
+#include "ray_sums.h"
 
 namespace isolux {
 namespace {
@@ -27,24 +28,37 @@ std::vector<std::uint32_t> LightLinks::Solver::places_of_some(std::size_t count,
   return places;
 }
 
-LightLinks::Solver::Solver(const LightLinks& links, const Scene& scene, const SampleSet& straight,
+LightLinks::Solver::Solver(const LightLinks& links, const Scene& scene, SampleSet straight,
                            std::vector<std::uint32_t> places, const ToGrid& to_grid, const Run& run)
-    : links_(links), scene_(scene), to_grid_(to_grid), run_(run), places_(std::move(places)) {
+    : links_(links),
+      scene_(scene),
+      to_grid_(to_grid),
+      run_(run),
+      places_(std::move(places)),
+      channels_(std::size_t(straight.channels)) {
+  if (reads_sites())
+    straight_ = std::move(straight.radiance);
+  else
+    gather_seen(std::move(straight));
+}
+
+void LightLinks::Solver::gather_seen(SampleSet straight) {
+  const Sites& sites = links_.sites_;
+  seen_.channels = straight.channels;
   if (places_.empty()) {
-    straight_ = straight.radiance;
-    seen_ = straight;
+    straight_ = std::move(straight.radiance);
+    seen_.sites = sites;
+    seen_.variance = std::move(straight.variance);
     return;
   }
-  seen_.channels = straight.channels;
-  const auto channels = std::size_t(straight.channels);
   for (std::size_t site = 0; site < places_.size(); ++site) {
     if (places_[site] == kLeftOut) continue;
     numbers_.push_back(std::uint32_t(site));
-    seen_.sites.positions.push_back(straight.sites.positions[site]);
-    seen_.sites.isovalues.push_back(straight.sites.isovalues[site]);
-    seen_.sites.normals.push_back(straight.sites.normals[site]);
+    seen_.sites.positions.push_back(sites.positions[site]);
+    seen_.sites.isovalues.push_back(sites.isovalues[site]);
+    seen_.sites.normals.push_back(sites.normals[site]);
     seen_.variance.push_back(straight.variance[site]);
-    for (std::size_t c = 0; c < channels; ++c) straight_.push_back(straight.radiance[site * channels + c]);
+    for (std::size_t c = 0; c < channels_; ++c) straight_.push_back(straight.radiance[site * channels_ + c]);
   }
 }
 
@@ -56,10 +70,9 @@ TargetLight LightLinks::Solver::before_last(const SolveSettings& settings, std::
     solution.sweeps = settings.bounces;
     return at_targets(e_);
   }
-  const auto channels = std::size_t(seen_.channels);
-  if (start.size() == links_.sites_.size() * channels)
+  if (start.size() == links_.sites_.size() * channels_)
     for (std::size_t i = 0; i < e_.size(); ++i)
-      e_[i] = start[numbers_.empty() ? i : numbers_[i / channels] * channels + i % channels];
+      e_[i] = start[numbers_.empty() ? i : numbers_[i / channels_] * channels_ + i % channels_];
   Anderson anderson(run_);
   while (solution.sweeps < settings.most_sweeps) {
     ++solution.sweeps;
@@ -73,17 +86,18 @@ TargetLight LightLinks::Solver::before_last(const SolveSettings& settings, std::
 std::vector<float> LightLinks::Solver::reflect(const TargetLight& light) const {
   const std::size_t stride = light.stride();
   const std::size_t channels = light.channels;
-  const std::vector<float>& isovalues = seen_.sites.isovalues;
-  std::vector<float> sums(isovalues.size() * stride, 0.0f);
+  const std::vector<float>& levels = isovalues();
+  std::vector<float> sums(levels.size() * stride, 0.0f);
   for (const LinkRound& round : links_.rounds_->all) add_targets(round, stride, light.values, places_, sums, run_);
   std::vector<float> next(straight_.size());
-  parallel_blocks(isovalues.size(), kSitesABlock, run_, "", [&](const Block& block) {
+  const RayCounts rays = links_.kept_rays();
+  parallel_blocks(levels.size(), kSitesABlock, run_, "", [&](const Block& block) {
     for (std::size_t i = block.begin; i < block.end; ++i) {
       const std::size_t site = numbers_.empty() ? i : numbers_[i];
-      const Vec3f albedo = scene_.albedo.at(isovalues[i]) / float(links_.rays_[site]);
+      const Vec3f albedo = scene_.albedo.at(levels[i]) / float(rays.of(site));
       for (std::size_t c = 0; c < channels; ++c) {
         float sum = sums[i * stride + c];
-        if (light.sloped) sum += sums[i * stride + channels + c] * (isovalues[i] - light.isovalue);
+        if (light.sloped) sum += sums[i * stride + channels + c] * (levels[i] - light.isovalue);
         next[i * channels + c] = straight_[i * channels + c] + albedo[int(c)] * sum;
       }
     }
@@ -92,8 +106,7 @@ std::vector<float> LightLinks::Solver::reflect(const TargetLight& light) const {
 }
 
 TargetLight LightLinks::Solver::at_targets(const std::vector<float>& e) {
-  const auto channels = std::size_t(seen_.channels);
-  if (reads_sites()) return {.values = e, .channels = channels};
+  if (reads_sites()) return {.values = e, .channels = channels_};
   if (!to_grid_) throw InvalidInput("the sites do not sit at the texels: bounces want a way from samples to a grid");
   seen_.radiance = e;
   IlluminationGrid grid = to_grid_(seen_);
@@ -101,7 +114,7 @@ TargetLight LightLinks::Solver::at_targets(const std::vector<float>& e) {
     throw InvalidInput("the grid of reflected light is not of the links' texels and the scene's channels");
   if (!grid.detail.slopes.empty()) return sloped(grid);
   light_ = std::move(grid.values);
-  return {.values = light_, .channels = channels};
+  return {.values = light_, .channels = channels_};
 }
 
 TargetLight LightLinks::Solver::sloped(const IlluminationGrid& grid) {

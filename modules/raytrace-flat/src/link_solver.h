@@ -21,9 +21,9 @@ struct LightLinks::Rounds {
 /// All bounces or some of them, from the light without reflections, of all sites or some of them.
 class LightLinks::Solver {
  public:
-  /// \pre `straight` is e without reflections of all sites, or of those that have a place (kLeftOut: none; empty: all),
-  /// and may go; everything else outlives this
-  Solver(const LightLinks& links, const Scene& scene, const SampleSet& straight, std::vector<std::uint32_t> places,
+  /// \pre `straight` is e without reflections of all sites, or of those that have a place (kLeftOut: none; empty: all);
+  /// everything that is not moved outlives this
+  Solver(const LightLinks& links, const Scene& scene, SampleSet straight, std::vector<std::uint32_t> places,
          const ToGrid& to_grid, const Run& run);
 
   /// Places of one of `one_of` of `count` sites, drawn from each so many that follow each other.
@@ -35,6 +35,11 @@ class LightLinks::Solver {
 
  private:
   [[nodiscard]] bool reads_sites() const { return links_.rounds_->targets->are_sites(); }
+  /// What a grid is made of: the sites that are solved for.
+  void gather_seen(SampleSet straight);
+  [[nodiscard]] const std::vector<float>& isovalues() const {
+    return reads_sites() ? links_.sites_.isovalues : seen_.sites.isovalues;
+  }
   /// The light without reflections and what one reflection of `light` adds.
   [[nodiscard]] std::vector<float> reflect(const TargetLight& light) const;
   /// As the targets show it. \pre `e` lives as long as what is returned
@@ -50,11 +55,12 @@ class LightLinks::Solver {
   const Run& run_;
   std::vector<std::uint32_t> places_;   ///< of the links' sites among those that are solved for; empty: all
   std::vector<std::uint32_t> numbers_;  ///< of those sites
-  std::vector<float> straight_;         ///< e without reflections
-  SampleSet seen_;                      ///< what to_grid_ is shown
-  std::vector<float> e_;                ///< the last iterate
-  std::vector<float> light_;            ///< what at_targets() returned
-  std::vector<float> texels_;           ///< measure_texels()
+  std::size_t channels_;
+  std::vector<float> straight_;  ///< e without reflections
+  SampleSet seen_;               ///< what to_grid_ is shown; empty where sites are read in place
+  std::vector<float> e_;         ///< the last iterate
+  std::vector<float> light_;     ///< what at_targets() returned
+  std::vector<float> texels_;    ///< measure_texels()
   float middle_ = 0.0f;
 };
 

@@ -24,14 +24,24 @@ namespace isolux::wide {
   return std::max<std::size_t>(1, kBatch / rays);
 }
 
+/// Rays [first, first + count) of those that a site has.
+struct RayRange {
+  std::size_t first = 0;
+  std::size_t count = 0;
+  std::size_t all = 0;  ///< of a site, if more than these: what interleaved nets are parted by
+};
+
 /// The first rays of sites: every site's are the same net of points with its own digital shift, independent of all
 /// others or such that neighbours' rays are one net.
 class Aimer {
  public:
-  /// Aims rays [first, first + rays) of each site; interleaved nets begin at ray 0.
-  Aimer(const IndexToWorld& frame, std::uint64_t seed, std::size_t rays, std::size_t first, RayNets nets,
-        const Sites& sites)
-      : points_(first + rays), to_index_(frame), seed_(mix_bits(seed)), rays_(rays), first_(first) {
+  Aimer(const IndexToWorld& frame, std::uint64_t seed, const RayRange& range, RayNets nets, const Sites& sites)
+      : points_(range.first + range.count),
+        to_index_(frame),
+        seed_(mix_bits(seed)),
+        rays_(range.count),
+        first_(range.first),
+        part_bits_(int(std::bit_width(std::max(range.all, range.first + range.count) - 1))) {
     if (nets == RayNets::kInterleaved) places_.emplace(sites);
   }
 
@@ -62,7 +72,7 @@ class Aimer {
     const NetPlaces::Place place = places_ ? places_->of(sites, site) : NetPlaces::Place{.net = key, .part = 0};
     const std::uint64_t bits = mix_bits(seed_ + place.net);
     // The parts of a net are its points with the upper bits of their numbers changed, which is a digital shift.
-    const SobolPoint part = sobol_point(std::uint64_t(place.part) << std::bit_width(rays_ - 1));
+    const SobolPoint part = sobol_point(std::uint64_t(place.part) << part_bits_);
     return {.u = std::uint32_t(bits) ^ part.u, .v = std::uint32_t(bits >> 32) ^ part.v};
   }
 
@@ -71,6 +81,7 @@ class Aimer {
   std::uint64_t seed_;
   std::size_t rays_;
   std::size_t first_;
+  int part_bits_;                      ///< of the numbers of a site's rays
   std::optional<NetPlaces> places_{};  ///< of interleaved nets
 };
 

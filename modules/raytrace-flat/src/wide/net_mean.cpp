@@ -22,11 +22,12 @@ constexpr float kUnknownVariance = std::numeric_limits<float>::max();
 
 }  // namespace
 
-NetMean::NetMean(const SobolPoints& points, std::size_t rays) : order_(rays) {
+NetMean::NetMean(const SobolPoints& points, std::size_t rays, std::size_t first) : order_(rays) {
   // Neighbours on the curve share the small squares of the net, and still do after a digital shift.
   std::iota(order_.begin(), order_.end(), 0u);
-  std::sort(order_.begin(), order_.end(),
-            [&](std::uint32_t a, std::uint32_t b) { return morton_place(points, a) < morton_place(points, b); });
+  std::sort(order_.begin(), order_.end(), [&](std::uint32_t a, std::uint32_t b) {
+    return morton_place(points, std::uint32_t(first) + a) < morton_place(points, std::uint32_t(first) + b);
+  });
 }
 
 NetMean::Moments NetMean::moments(std::span<const Vec3> values) const {

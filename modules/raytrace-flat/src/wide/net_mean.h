@@ -15,7 +15,8 @@ namespace isolux::wide {
 /// Mean and variance of what the rays of a site bring, the rays being points of a net.
 class NetMean {
  public:
-  NetMean(const SobolPoints& points, std::size_t rays);
+  /// Of rays [first, first + rays).
+  NetMean(const SobolPoints& points, std::size_t rays, std::size_t first = 0);
 
   /// Sum of one value a ray, and the sum of the squared differences of neighbouring strata.
   struct Moments {
@@ -23,7 +24,7 @@ class NetMean {
     Vec3 differences{0.0};
   };
   [[nodiscard]] Moments moments(std::span<const Vec3> values) const;
-  /// Neighbours of this list are neighbouring strata.
+  /// Numbers of the rays, less the first: neighbours of this list are neighbouring strata.
   [[nodiscard]] const std::vector<std::uint32_t>& order() const { return order_; }
 
   /// Writes e and its squared standard error for a site, from one value a ray. The variance is that of neighbouring
@@ -37,7 +38,7 @@ class NetMean {
   void add(const Moments& moments, std::size_t site, SampleSet& samples) const;
 
  private:
-  std::vector<std::uint32_t> order_;  ///< rays along a curve of Morton's
+  std::vector<std::uint32_t> order_;  ///< along a curve of Morton's
 };
 
 /// The sites with a normal whose light is found twice, to know by how much NetMean's variances are too large: all of

@@ -60,7 +60,7 @@ PathWaves::PathWaves(const Volume& volume, const Scene& scene, const TraceSettin
       field_(volume),
       environment_(scene.environment),
       lights_(scene.lights.begin(), scene.lights.end()),
-      aimer_(volume.lattice().frame, seed, std::size_t(settings.rays), 0, settings.nets, sites),
+      aimer_(volume.lattice().frame, seed, {.count = std::size_t(settings.rays)}, settings.nets, sites),
       mean_(aimer_.points(), std::size_t(settings.rays)) {}
 
 UnitPair PathWaves::numbers(const Wave& wave, const Path& path, std::uint32_t dimension) const {

@@ -4,8 +4,10 @@
 #include <isolux/core/parallel.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
+#include <utility>
 #include <vector>
 
 #include "wide/inner.h"
@@ -90,15 +92,17 @@ struct BucketLevels {
 };
 
 struct Entry {
-  std::uint64_t key;  ///< bucket, then Morton order
+  std::uint64_t place;  ///< along Morton's curve
   std::uint32_t site;
-  bool operator<(const Entry& other) const { return key != other.key ? key < other.key : site < other.site; }
+  bool operator<(const Entry& other) const { return place != other.place ? place < other.place : site < other.site; }
 };
+using Bucket = std::vector<Entry>;
 
-/// The sites of buckets [first, last), by bucket and Morton order.
-std::vector<Entry> collect(const Sites& sites, OuterSide outer, const std::vector<float>& thresholds, std::size_t first,
-                           std::size_t last, const Run& run) {
-  std::vector<std::vector<Entry>> parts(block_count(sites.size(), kSitesAPass));
+/// The sites of the buckets from `first` on, as many as a group has, each bucket in Morton order.
+std::vector<Bucket> collect(const Sites& sites, OuterSide outer, const std::vector<float>& thresholds,
+                            std::size_t first, const Run& run) {
+  const std::size_t last = std::min(thresholds.size(), first + kBucketsAGroup);
+  std::vector<std::array<Bucket, kBucketsAGroup>> parts(block_count(sites.size(), kSitesAPass));
   const float low = thresholds[first];
   const float high = last < thresholds.size() ? thresholds[last] : std::numeric_limits<float>::infinity();
   parallel_blocks(sites.size(), kSitesAPass, run, "", [&](const Block& block) {
@@ -106,18 +110,21 @@ std::vector<Entry> collect(const Sites& sites, OuterSide outer, const std::vecto
     for (std::size_t i = block.begin; i < block.end; ++i) {
       const float value = signed_isovalue(sites.isovalues[i], outer);
       if (!(value >= low && value < high)) continue;
-      const auto bucket = std::upper_bound(thresholds.begin(), thresholds.end(), value) - thresholds.begin() - 1;
-      part.push_back({std::uint64_t(bucket) << 56 | morton(sites.positions[i]) >> 7, std::uint32_t(i)});
+      std::size_t bucket = 0;
+      while (first + bucket + 1 < last && value >= thresholds[first + bucket + 1]) ++bucket;
+      part[bucket].push_back({morton(sites.positions[i]) >> 7, std::uint32_t(i)});
     }
-    std::sort(part.begin(), part.end());
   });
-  std::vector<Entry> all;
-  for (auto& part : parts) {
-    all.insert(all.end(), part.begin(), part.end());
-    part = {};
-  }
-  std::sort(all.begin(), all.end());
-  return all;
+  std::vector<Bucket> buckets(last - first);
+  parallel_blocks(buckets.size(), 1, run, "", [&](const Block& block) {
+    Bucket& bucket = buckets[block.index];
+    for (auto& part : parts) {
+      const Bucket found = std::exchange(part[block.index], {});
+      bucket.insert(bucket.end(), found.begin(), found.end());
+    }
+    std::sort(bucket.begin(), bucket.end());
+  });
+  return buckets;
 }
 
 /// A run whose progress is that of a part of a longer one.
@@ -148,25 +155,23 @@ void for_each_block(const Volume& volume, const Sites& sites, const BlockRequest
   InnerCubes inner(inner_codes);
   std::size_t done = 0;
   for (std::size_t first = 0; first < levels.least.size(); first += kBucketsAGroup) {
-    const std::size_t last = std::min(levels.least.size(), first + kBucketsAGroup);
-    const std::vector<Entry> entries = collect(sites, request.outer, levels.least, first, last, run);
-    for (std::size_t begin = 0; begin < entries.size();) {
-      const std::uint64_t bucket = entries[begin].key >> 56;
-      std::size_t end = begin;
-      while (end < entries.size() && entries[end].key >> 56 == bucket) ++end;
+    const std::vector<Bucket> group = collect(sites, request.outer, levels.least, first, run);
+    for (std::size_t b = 0; b < group.size(); ++b) {
+      const Bucket& entries = group[b];
+      if (entries.empty()) continue;
+      const std::size_t bucket = first + b;
       occupancy.build(codes, int(bucket), run);
       inner.build(inner_codes, int(bucket), run);
-      const Run part = part_of(run, done, end - begin, sites.size());
-      parallel_blocks(end - begin, request.sites_per_block, part, stage, [&](const Block& block) {
+      const Run part = part_of(run, done, entries.size(), sites.size());
+      parallel_blocks(entries.size(), request.sites_per_block, part, stage, [&](const Block& block) {
         std::vector<std::uint32_t> numbers;
-        for (std::size_t i = block.begin; i < block.end; ++i) numbers.push_back(entries[begin + i].site);
+        for (std::size_t i = block.begin; i < block.end; ++i) numbers.push_back(entries[i].site);
         SiteBlock sites_of_block{numbers, field, occupancy.view(), inner.view()};
         sites_of_block.occupancy.threshold = signed_isovalue(levels.thresholds[bucket], request.outer);
         sites_of_block.inner.ceiling = levels.highest[bucket];
         body(sites_of_block);
       });
-      done += end - begin;
-      begin = end;
+      done += entries.size();
     }
   }
 }

@@ -61,8 +61,9 @@ struct BakeSettings {
   double target_rmse = 0.0;
   double target_seconds = 0.0;
   bool wants_error_grid = false;  ///< fill BakeResult::error
-  /// What the kept rays of scattered sites may take, of which there may be many more than texels: where the first ones
-  /// would take more, reflections are followed by paths, and no rounds of target_rmse go beyond (BakeResult::skipped).
+  /// What kept rays may take. Of more, reflections are iterated over as many of each site as fit and the others traced
+  /// once, for the last reflection; fewer than four follow paths. No rounds of target_rmse go beyond
+  /// (BakeResult::skipped).
   std::uint64_t most_link_bytes = std::uint64_t(4) << 30;
 };
 
@@ -91,8 +92,8 @@ struct BakeResult {
   std::uint32_t most_rays = 0;
   std::size_t link_bytes = 0;  ///< memory of kept rays
   /// What was known without tracing, by reason, of sites at texels: sites_flat (no gradient, hence no normal),
-  /// sites_outside_iso_range, texels_predicted. Of scattered sites links_beyond_memory, rays that were not
-  /// kept, reflections being followed by paths; rounds_beyond_memory, 1 where target_rmse was not reached for that.
+  /// sites_outside_iso_range, texels_predicted. And links_beyond_memory, rays that were not kept
+  /// (BakeSettings::most_link_bytes); rounds_beyond_memory, 1 where target_rmse was not reached for that.
   std::map<std::string, std::uint64_t> skipped;
   std::map<std::string, double> seconds;  ///< by stage: sites, trace, bounces (of kIterated), resample
 };

@@ -24,6 +24,7 @@ struct GatherSettings {
   int rays = 64;  ///< a site
   OuterSide outer = OuterSide::kLower;
   RayQuestion question = RayQuestion::kFirstHit;
+  int all_rays = 0;                       ///< that a site will have had by and by; 0: no more than these
   int first_ray = 0;                      ///< rays [first_ray, first_ray + rays) of each site's sequence
   std::span<const std::uint32_t> keys{};  ///< what random numbers are keyed by, one a site; empty: the site's number
   RayNets nets = RayNets::kIndependent;
@@ -53,8 +54,9 @@ using RaySink = std::function<void(const GatheredRays&)>;
 /// shift for each site, keyed by run.seed and the site's number: they do not depend on threads, other sites, or what
 /// the volume holds. Which sites arrive together does not depend on threads either. \pre require_usable(volume); sites
 /// inside its box with unit normals (sites of normal zero are given to the sink with directions that mean nothing).
-/// Interleaved, a site's shift also follows from its place among the sites; there are no keys and no first_ray then.
-/// \throw Cancelled; InvalidInput for volumes of 2^31 voxels or more, or rays < 1
+/// Interleaved, a site's shift also follows from its place among the sites; there are no keys then, and a first_ray
+/// only where all_rays says of which net these are a part. \throw Cancelled; InvalidInput for volumes of 2^31 voxels or
+/// more, or rays < 1
 [[nodiscard]] TraceCounters gather(const Volume& volume, const Sites& sites, const GatherSettings& settings,
                                    const Run& run, const RaySink& sink);
 

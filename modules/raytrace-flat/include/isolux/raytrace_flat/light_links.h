@@ -18,6 +18,9 @@
 
 namespace isolux {
 
+struct LinkAim;
+struct RayCounts;
+struct RoundRequest;
 struct TargetLight;
 
 /// What is kept of each ray.
@@ -29,6 +32,9 @@ enum class LinkEnds : std::uint8_t {
 
 struct LinkSettings {
   int rays = 64;  ///< a site, at first
+  /// Of these, how many are kept, a power of two: reflections are iterated over them; the others are traced anew for
+  /// the last reflection of each solution, and forgotten. 0: all, and only then more rays or sites can be had.
+  int kept = 0;
   OuterSide outer = OuterSide::kLower;
   LinkEnds ends = LinkEnds::kKept;
   std::optional<Lattice> texels{};       ///< the grid that reflected light is read from; default one texel a cell
@@ -46,10 +52,11 @@ struct SolveSettings {
 };
 
 struct Solution {
-  SampleSet samples;       ///< e at the sites
-  int sweeps = 0;          ///< over the links
-  double change = 0.0;     ///< what was left to come after the last sweep, estimated; rms over the rms of e
-  TraceCounters counters;  ///< shadow rays
+  SampleSet samples;           ///< e at the sites
+  int sweeps = 0;              ///< over the links
+  double change = 0.0;         ///< what was left to come after the last sweep, estimated; rms over the rms of e
+  TraceCounters counters;      ///< shadow rays, and rays that are not kept
+  double trace_seconds = 0.0;  ///< for the latter
 };
 
 /// Hemisphere rays of a set of sites, traced once and kept by where they end: light that is reflected any number of
@@ -76,6 +83,7 @@ class LightLinks {
 
   /// Doubles the rays of the sites listed, each once: their sequences go on where they ended. `run` brings threads and
   /// progress; the seed stays. Not at the same time as any other call. \throw InvalidInput where nets are interleaved
+  /// or a part of the rays is kept
   void extend(std::span<const std::uint32_t> sites, const Run& run);
 
   /// More sites, behind those that are there, with settings.rays each. Not at the same time as any other call. \throw
@@ -116,10 +124,20 @@ class LightLinks {
   /// The last reflection, of the light given, with what it takes to know its noise.
   void reflect_last(const Scene& scene, const SampleSet& lamps, const TargetLight& light, const SolveSettings& settings,
                     Solution& solution, const Run& run) const;
-  /// e of the sites, those apart that have no place (kLeftOut; empty: all have one): light that comes straight from
-  /// lamps, and what the rays bring; reflected light from `e` at the targets (none if empty).
-  void add_up(const Scene& scene, const SampleSet& lamps, const TargetLight& e, std::span<const std::uint32_t> places,
-              SampleSet& samples, const Run& run) const;
+  /// e without reflections by the rays that are kept, but of sites that have no place (kLeftOut; empty: all have one).
+  [[nodiscard]] SampleSet straight(const Scene& scene, const SampleSet& lamps, std::span<const std::uint32_t> places,
+                                   const Run& run) const;
+  /// e by all rays, reflecting the light given at the targets (none if empty).
+  [[nodiscard]] SampleSet reflected(const Scene& scene, const SampleSet& lamps, const TargetLight& light,
+                                    Solution& solution, const Run& run) const;
+  [[nodiscard]] RayCounts kept_rays() const;
+  [[nodiscard]] std::size_t first_rays() const {
+    return std::size_t(settings_.kept > 0 ? settings_.kept : settings_.rays);
+  }
+  [[nodiscard]] LinkAim aim() const;
+  [[nodiscard]] RoundRequest request(std::size_t first, std::size_t rays) const;
+  /// \throw InvalidInput where there can be no more of what is named
+  void require_open(const char* what) const;
 
   const Volume& volume_;
   Sites sites_;
