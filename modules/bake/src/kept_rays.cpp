@@ -18,6 +18,8 @@ namespace {
 constexpr int kMostRounds = 24;
 /// Sites a texel that reflections are iterated over; the others gather the light found.
 constexpr double kSitesEnough = 2.0;
+/// Rays of a site at a texel whose ends they are iterated over.
+constexpr int kEndsEnough = 16;
 
 }  // namespace
 
@@ -48,7 +50,10 @@ KeptRays::KeptRays(const Volume& volume, const Scene& scene, const BakeSettings&
                              .nets = has_target(settings_) ? RayNets::kIndependent : RayNets::kInterleaved};
   links_ = std::make_unique<LightLinks>(volume, std::move(found.sites), request, run);
   trace_seconds_ = watch.seconds();
-  if (!reads_means(settings_)) return;
+  if (!reads_means(settings_)) {
+    if (!has_target(settings_)) ends_one_of_ = std::size_t(std::max(1, kept / kEndsEnough));
+    return;
+  }
   const double a_texel = settings_.isovalues ? sites_a_texel(volume.lattice(), texels_, settings_)
                                              : double(links_->sites().size()) / double(texels_.count());
   one_of_ = std::max<std::size_t>(1, std::size_t(a_texel / kSitesEnough * double(kept) / double(rays)));
@@ -63,8 +68,10 @@ IlluminationGrid KeptRays::between_reflections(const SampleSet& samples, const R
 
 Solution KeptRays::solve(const Scene& scene, const Run& run, BakeResult& result) {
   const Stopwatch watch;
-  const SolveSettings settings{
-      .bounces = settings_.trace.bounces, .gradient = settings_.trace.gradient, .one_of = one_of_};
+  const SolveSettings settings{.bounces = settings_.trace.bounces,
+                               .gradient = settings_.trace.gradient,
+                               .one_of = one_of_,
+                               .ends_one_of = ends_one_of_};
   Solution solution = links_->solve(
       scene, settings, [&](const SampleSet& samples) { return between_reflections(samples, run); }, run, last_);
   last_ = solution.samples.radiance;

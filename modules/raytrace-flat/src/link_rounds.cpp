@@ -2,6 +2,7 @@
 
 #include <hwy/cache_control.h>
 #include <isolux/core/parallel.h>
+#include <isolux/core/random.h>
 #include <isolux/raytrace_flat/trace_counters.h>
 
 #include <mutex>
@@ -14,10 +15,12 @@ namespace {
 
 /// Sites of a block lie far apart in memory: how many early they are asked for.
 constexpr std::size_t kTargetsAhead = 16;
+/// Of a site, that say enough of the others.
+constexpr std::size_t kFewTargets = 2;
 
 /// Adds the light of one site's targets. Two sums at once hide half of the additions' latency.
 template <int stride>
-void add_site(std::span<const std::uint32_t> targets, const float* light, float* sum) {
+void add_all(std::span<const std::uint32_t> targets, const float* light, float* sum) {
   float even[stride] = {};
   float odd[stride] = {};
   std::size_t i = 0;
@@ -33,9 +36,21 @@ void add_site(std::span<const std::uint32_t> targets, const float* light, float*
   }
 }
 
+/// The same of one of `one_of` targets, which stand for the others. Targets lie in the order of the net's strata.
 template <int stride>
-void add_block(const LinkBlock& block, std::span<const float> light, std::span<const std::uint32_t> places,
-               std::span<float> sums) {
+void add_some(std::span<const std::uint32_t> targets, std::size_t first, std::size_t one_of, const float* light,
+              float* sum) {
+  float some[stride] = {};
+  std::size_t count = 0;
+  for (std::size_t i = first; i < targets.size(); i += one_of, ++count)
+    for (int c = 0; c < stride; ++c) some[c] += light[std::size_t(targets[i]) * stride + std::size_t(c)];
+  const float scale = float(targets.size()) / float(count);
+  for (int c = 0; c < stride; ++c) sum[c] += some[c] * scale;
+}
+
+template <int stride>
+void add_block(const LinkBlock& block, const TargetsRead& read, std::span<float> sums) {
+  const auto [light, places, one_of] = read;
   for (std::size_t s = 0; s < block.sites.size(); ++s) {
     std::size_t place = block.sites[s];
     if (places.empty()) {
@@ -47,7 +62,11 @@ void add_block(const LinkBlock& block, std::span<const float> light, std::span<c
       place = places[place];
     }
     const std::size_t begin = block.begins[s];
-    add_site<stride>({block.targets.data() + begin, block.begins[s + 1] - begin}, light.data(), &sums[place * stride]);
+    const std::span targets(block.targets.data() + begin, block.begins[s + 1] - begin);
+    if (targets.size() < kFewTargets * one_of || one_of == 1)
+      add_all<stride>(targets, light.data(), &sums[place * stride]);
+    else
+      add_some<stride>(targets, mix_bits(block.sites[s]) % one_of, one_of, light.data(), &sums[place * stride]);
   }
 }
 
@@ -158,11 +177,11 @@ void mark_hits(const GatheredRays& gathered, std::size_t place, const LinkRound&
   }
 }
 
-void add_targets(const LinkRound& round, std::size_t stride, std::span<const float> light,
-                 std::span<const std::uint32_t> places, std::span<float> sums, const Run& run) {
+void add_targets(const LinkRound& round, std::size_t stride, const TargetsRead& read, std::span<float> sums,
+                 const Run& run) {
   const auto add = stride == 1 ? add_block<1> : stride == 2 ? add_block<2> : stride == 3 ? add_block<3> : add_block<6>;
   parallel_blocks(round.blocks.size(), kBlocksATask, run, "", [&](const Block& task) {
-    for (std::size_t b = task.begin; b < task.end; ++b) add(round.blocks[b], light, places, sums);
+    for (std::size_t b = task.begin; b < task.end; ++b) add(round.blocks[b], read, sums);
   });
 }
 

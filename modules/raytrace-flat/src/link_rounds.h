@@ -99,9 +99,15 @@ void mark_hits(const GatheredRays& gathered, std::size_t place, const LinkRound&
 /// The place of a site that is left out.
 inline constexpr std::uint32_t kLeftOut = ~std::uint32_t(0);
 
-/// Adds the sum of `light` over each site's targets to its sums, `stride` values each: 1, 2, 3 or 6. `places` says
-/// where a site's sums are, or kLeftOut; empty: at its number.
-void add_targets(const LinkRound& round, std::size_t stride, std::span<const float> light,
-                 std::span<const std::uint32_t> places, std::span<float> sums, const Run& run);
+/// What add_targets() reads.
+struct TargetsRead {
+  std::span<const float> light;           ///< of each target
+  std::span<const std::uint32_t> places;  ///< where a site's sums are, or kLeftOut; empty: at its number
+  std::size_t one_of = 1;                 ///< of so many targets of a site one is read and stands for the others
+};
+
+/// Adds the sum of the light over each site's targets to its sums, `stride` values each: 1, 2, 3 or 6.
+void add_targets(const LinkRound& round, std::size_t stride, const TargetsRead& read, std::span<float> sums,
+                 const Run& run);
 
 }  // namespace isolux

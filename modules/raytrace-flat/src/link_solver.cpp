@@ -73,6 +73,7 @@ TargetLight LightLinks::Solver::before_last(const SolveSettings& settings, std::
   if (start.size() == links_.sites_.size() * channels_)
     for (std::size_t i = 0; i < e_.size(); ++i)
       e_[i] = start[numbers_.empty() ? i : numbers_[i / channels_] * channels_ + i % channels_];
+  ends_one_of_ = std::max<std::size_t>(settings.ends_one_of, 1);
   Anderson anderson(run_);
   while (solution.sweeps < settings.most_sweeps) {
     ++solution.sweeps;
@@ -88,7 +89,8 @@ std::vector<float> LightLinks::Solver::reflect(const TargetLight& light) const {
   const std::size_t channels = light.channels;
   const std::vector<float>& levels = isovalues();
   std::vector<float> sums(levels.size() * stride, 0.0f);
-  for (const LinkRound& round : links_.rounds_->all) add_targets(round, stride, light.values, places_, sums, run_);
+  for (const LinkRound& round : links_.rounds_->all)
+    add_targets(round, stride, {light.values, places_, ends_one_of_}, sums, run_);
   std::vector<float> next(straight_.size());
   const RayCounts rays = links_.kept_rays();
   parallel_blocks(levels.size(), kSitesABlock, run_, "", [&](const Block& block) {

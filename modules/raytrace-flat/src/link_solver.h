@@ -62,6 +62,7 @@ class LightLinks::Solver {
   std::vector<float> light_;     ///< what at_targets() returned
   std::vector<float> texels_;    ///< measure_texels()
   float middle_ = 0.0f;
+  std::size_t ends_one_of_ = 1;  ///< SolveSettings
 };
 
 }  // namespace isolux

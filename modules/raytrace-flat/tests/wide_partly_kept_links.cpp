@@ -63,6 +63,24 @@ TEST_P(PartlyKeptLinks, ReflectTheSameLight) {
   EXPECT_EQ(all.counters.rays, 0u);
 }
 
+// Nor does it matter much whether sweeps read all ends or one of four, and the light of a furnace is the same exactly.
+TEST_P(PartlyKeptLinks, IterateOverSomeEnds) {
+  const LightLinks all = links(64, 0);
+  const auto e = [&](const Scene& scene, std::size_t one_of) {
+    return all.solve(scene, {.ends_one_of = one_of}, {}, isolux::Run{}).samples.radiance;
+  };
+  const std::vector<float> exact = e(half_lit(), 1);
+  const std::vector<float> some = e(half_lit(), 4);
+  double squares = 0.0;
+  for (std::size_t i = 0; i < exact.size(); ++i) squares += std::pow(double(some[i]) - double(exact[i]), 2.0);
+  EXPECT_LT(std::sqrt(squares / double(exact.size())), 0.008);  // as above, with sqrt(16)
+  EXPECT_GT(squares, 0.0);
+  Scene white = furnace(0.5f);
+  white.emission = {.keys = {{0.0f, Vec3f(0.5f)}}};
+  // Iteration ends when .002 of e is left to come.
+  for (const float value : e(white, 4)) EXPECT_NEAR(value, 1.0f, 0.004f);
+}
+
 TEST_P(PartlyKeptLinks, TakeLessMemory) { EXPECT_LT(links(64, 8).bytes(), links(64, 0).bytes() / 3); }
 
 TEST_P(PartlyKeptLinks, GiveTheSameBitsForAnyNumberOfThreads) {

@@ -49,6 +49,9 @@ struct SolveSettings {
   /// All bounces, of sites that do not sit at the texels: iterate over one of so many sites; all of them make the last
   /// reflection. Where many share a texel, some say as much of it.
   std::size_t one_of = 1;
+  /// All bounces: iterate over one of so many ends of each site, in turn along its net's strata; the last reflection
+  /// reads all. The noise that this leaves is that of the mean over the ends of what they reflect.
+  std::size_t ends_one_of = 1;
 };
 
 struct Solution {
