@@ -10,7 +10,6 @@
 #include <cstdint>
 #include <limits>
 #include <utility>
-#include <variant>
 
 #include "bake_parts.h"
 #include "both_sides.h"
@@ -49,12 +48,10 @@ bool keeps_too_few(const BakeSettings& settings, std::size_t sites) {
 /// Without bounces kept rays see what the wide tracer sees, unless that one aims at light sources or at the bright
 /// parts of an image.
 bool keeps_rays(const BakeSettings& settings, const Scene& scene, std::size_t sites) {
-  const bool aims = !scene.lights.empty() || std::holds_alternative<ImageEnvironment>(scene.environment);
   // Rays can be doubled only where all are kept.
   if (settings.bounce_method == BounceMethod::kIterated)
-    return !has_target(settings) ||
-           (scene.lights.empty() && kept_rays_a_site(settings, sites, kFirstRays) == kFirstRays);
-  return has_target(settings) && settings.trace.bounces == 0 && settings.tracer.name == "wide" && !aims;
+    return !has_target(settings) || (!has_lamps(scene) && kept_rays_a_site(settings, sites, kFirstRays) == kFirstRays);
+  return has_target(settings) && settings.trace.bounces == 0 && settings.tracer.name == "wide" && !has_lamps(scene);
 }
 
 BakeResult bake_side(const Volume& volume, const Scene& scene, const BakeSettings& settings, FoundSites found,

@@ -10,8 +10,6 @@ namespace {
 
 constexpr double kPi = std::numbers::pi;
 
-double luminance(const Vec3f& c) { return 0.2126 * double(c.x) + 0.7152 * double(c.y) + 0.0722 * double(c.z); }
-
 bool is_black(const Vec3f& c) { return c == Vec3f(0.0f); }
 
 // World x, made perpendicular to up, is what the middle of an image shows; world y where up is x.
@@ -44,20 +42,23 @@ std::size_t find_interval(const double* sums, std::size_t count, double wanted, 
 
 }  // namespace
 
+double luminance(const Vec3f& c) { return 0.2126 * double(c.x) + 0.7152 * double(c.y) + 0.0722 * double(c.z); }
+
 EnvironmentView::EnvironmentView(const Environment& environment) : environment_(&environment) {
   if (const auto* sky = std::get_if<SkyEnvironment>(&environment)) frame_ = image_frame(sky->up);
   if (const auto* image = std::get_if<ImageEnvironment>(&environment)) frame_ = image_frame(image->up);
 }
 
 PreparedEnvironment::PreparedEnvironment(const Environment& environment) : EnvironmentView(environment) {
-  if (const auto* uniform = std::get_if<UniformEnvironment>(&environment)) {
-    shines_ = !is_black(uniform->radiance);
-  } else if (const auto* sky = std::get_if<SkyEnvironment>(&environment)) {
-    shines_ = !(is_black(sky->zenith) && is_black(sky->horizon) && is_black(sky->ground));
-  } else if (const auto* image = std::get_if<ImageEnvironment>(&environment)) {
-    shines_ = !std::all_of(image->pixels.begin(), image->pixels.end(), is_black);
-    if (shines_) prepare_image();
-  }
+  if (std::holds_alternative<ImageEnvironment>(environment) && shines()) prepare_image();
+}
+
+bool EnvironmentView::shines() const {
+  if (const auto* uniform = std::get_if<UniformEnvironment>(environment_)) return !is_black(uniform->radiance);
+  if (const auto* sky = std::get_if<SkyEnvironment>(environment_))
+    return !(is_black(sky->zenith) && is_black(sky->horizon) && is_black(sky->ground));
+  const auto& pixels = std::get<ImageEnvironment>(*environment_).pixels;
+  return !std::all_of(pixels.begin(), pixels.end(), is_black);
 }
 
 void PreparedEnvironment::prepare_image() {

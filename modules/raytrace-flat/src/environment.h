@@ -8,6 +8,9 @@
 
 namespace isolux {
 
+/// Of a colour, by the weights of Rec. 709.
+[[nodiscard]] double luminance(const Vec3f& colour);
+
 /// What an environment shines from where. Owns nothing of the scene, which must outlive it.
 class EnvironmentView {
  public:
@@ -15,6 +18,8 @@ class EnvironmentView {
 
   /// Radiance from world direction `towards` (unit).
   [[nodiscard]] Vec3 radiance(const Vec3& towards) const;
+  /// False where all directions are black.
+  [[nodiscard]] bool shines() const;
 
  protected:
   /// Place in an image: columns 0..1 from the left edge, rows 0..1 from the top.
@@ -34,9 +39,6 @@ class PreparedEnvironment : public EnvironmentView {
  public:
   explicit PreparedEnvironment(const Environment& environment);
 
-  /// False where all directions are black.
-  [[nodiscard]] bool shines() const { return shines_; }
-
   /// A direction drawn for the light of an image, and its density per solid angle.
   struct Sample {
     Vec3 towards{0.0};
@@ -51,7 +53,6 @@ class PreparedEnvironment : public EnvironmentView {
  private:
   void prepare_image();
 
-  bool shines_ = false;
   // Of patches between pixel centres, where the bilinear interpolant of an image is one piece: (height + 1) rows of
   // `width`, running sums of luminance times solid angle. Empty unless the environment is an image that shines.
   std::vector<double> patch_sums_;

@@ -10,6 +10,8 @@
 #include <optional>
 #include <utility>
 
+#include "bright_light.h"
+#include "bright_parts.h"
 #include "link_solver.h"
 #include "ray_sums.h"
 #include "wide/net_mean.h"
@@ -123,23 +125,28 @@ std::size_t LightLinks::bytes() const {
   return bytes;
 }
 
-SampleSet LightLinks::lamp_light(const Scene& scene, const SolveSettings& settings, TraceCounters& counters,
+SampleSet LightLinks::lamp_light(const SceneParts& parts, const SolveSettings& settings, TraceCounters& counters,
                                  const Run& run) const {
+  const Scene& scene = parts.whole();
   SampleSet samples;
   samples.channels = is_grey(scene) ? 1 : 3;
-  if (scene.lights.empty()) return samples;
-  samples.radiance.resize(sites_.size() * std::size_t(samples.channels));
-  Scene lamps = scene;
-  lamps.environment = UniformEnvironment{Vec3f(0.0f)};
-  lamps.emission = {.keys = {{0.0f, Vec3f(0.0f)}}};
+  if (scene.lights.empty() && parts.bright() == nullptr) return samples;
   const TraceSettings trace{.rays = settings_.rays, .bounces = 0, .gradient = settings.gradient};
   Run own = run;
   own.seed = seed_;
-  TraceResult result = tracers().create("wide")->trace(volume_, lamps, sites_, trace, own);
-  add(counters, result.counters);
-  for (std::size_t i = 0; i < samples.radiance.size(); ++i)
-    samples.radiance[i] = result.samples.radiance[result.samples.channels == samples.channels ? i : i / 3];
-  samples.variance = std::move(result.samples.variance);
+  samples.sites = sites_;
+  wide::put_darkness(samples, std::size_t(settings_.rays));
+  if (!scene.lights.empty()) {
+    const TraceResult found = tracers().create("wide")->trace(volume_, lamps_of(scene), sites_, trace, own);
+    add(counters, found.counters);
+    const SampleSet& lamps = found.samples;
+    for (std::size_t i = 0; i < samples.radiance.size(); ++i)
+      samples.radiance[i] = lamps.radiance[lamps.channels == samples.channels ? i : i / 3];
+    samples.variance = lamps.variance;
+  }
+  if (parts.bright() != nullptr)
+    add(counters, add_bright_light(volume_, scene.outer, *parts.bright(), trace, own, samples));
+  samples.sites = {};
   return samples;
 }
 
@@ -169,21 +176,22 @@ SampleSet LightLinks::reflecting(const Scene& scene, std::span<const float> texe
                                  const Run& run) const {
   if (settings_.ends != LinkEnds::kAtTexels) throw InvalidInput("light is given at texels: the links must end there");
   Solution last;
-  reflect_last(scene, lamp_light(scene, settings, last.counters, run),
+  const SceneParts parts(scene);
+  reflect_last(parts, lamp_light(parts, settings, last.counters, run),
                {.values = texels, .channels = is_grey(scene) ? 1u : 3u}, settings, last, run);
   return std::move(last.samples);
 }
 
-void LightLinks::reflect_last(const Scene& scene, const SampleSet& lamps, const TargetLight& light,
+void LightLinks::reflect_last(const SceneParts& parts, const SampleSet& lamps, const TargetLight& light,
                               const SolveSettings& settings, Solution& solution, const Run& run) const {
-  solution.samples = reflected(scene, lamps, light, solution, run);
+  solution.samples = reflected(parts.soft(), lamps, light, solution, run);
   solution.samples.sites = sites_;
   if (again_ == nullptr) return;
   // The probes see the same light with other rays.
   Run quiet = run;
   quiet.progress = {};
-  const SampleSet others = again_->lamp_light(scene, settings, solution.counters, quiet);
-  const SampleSet again = again_->reflected(scene, others, light, solution, quiet);
+  const SampleSet others = again_->lamp_light(parts, settings, solution.counters, quiet);
+  const SampleSet again = again_->reflected(parts.soft(), others, light, solution, quiet);
   wide::calibrate_variance(solution.samples, probes_, again, rays_);
 }
 
@@ -212,16 +220,17 @@ Solution LightLinks::solve(const Scene& scene, const SolveSettings& settings, co
   if (settings.bounces != 0 && settings_.ends == LinkEnds::kDropped)
     throw InvalidInput(fmt::format("bounces = {}: links whose ends were dropped allow 0", settings.bounces));
   Solution solution;
-  const SampleSet lamps = lamp_light(scene, settings, solution.counters, run);
+  const SceneParts parts(scene);
+  const SampleSet lamps = lamp_light(parts, settings, solution.counters, run);
   if (settings.bounces == 0) {
-    reflect_last(scene, lamps, {.channels = std::size_t(lamps.channels)}, settings, solution, run);
+    reflect_last(parts, lamps, {.channels = std::size_t(lamps.channels)}, settings, solution, run);
     return solution;
   }
   const bool some = settings.bounces == kAllBounces && settings.one_of > 1 && !rounds_->targets->are_sites();
   std::vector<std::uint32_t> places;
   if (some) places = Solver::places_of_some(sites_.size(), settings.one_of);
-  Solver solver(*this, scene, straight(scene, lamps, places, run), std::move(places), to_grid, run);
-  reflect_last(scene, lamps, solver.before_last(settings, start, solution), settings, solution, run);
+  Solver solver(*this, scene, straight(parts.soft(), lamps, places, run), std::move(places), to_grid, run);
+  reflect_last(parts, lamps, solver.before_last(settings, start, solution), settings, solution, run);
   return solution;
 }
 

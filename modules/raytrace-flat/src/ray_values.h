@@ -46,7 +46,7 @@ class RayValues {
 
   const Scene& scene_;
   TargetLight e_;
-  PreparedEnvironment environment_;
+  EnvironmentView environment_;
   const UniformEnvironment* uniform_;
   const SkyEnvironment* sky_;
   Vec3f up_{0.0f};

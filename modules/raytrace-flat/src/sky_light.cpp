@@ -16,25 +16,18 @@ namespace isolux {
 namespace {
 
 bool is_dark(const Scene& scene) {
-  return !PreparedEnvironment(scene.environment).shines() &&
+  return !EnvironmentView(scene.environment).shines() &&
          std::all_of(scene.emission.keys.begin(), scene.emission.keys.end(),
                      [](const IsovalueColour::Key& key) { return key.colour == Vec3f(0.0f); });
 }
 
 }  // namespace
 
-bool is_sky_light(const Scene& scene) {
-  return scene.lights.empty() && !PreparedEnvironment(scene.environment).has_samples();
-}
-
 TraceCounters add_sky_light(const Volume& volume, const Scene& scene, const TraceSettings& settings, const Run& run,
                             SampleSet& samples) {
   const auto rays = std::size_t(settings.rays);
   const wide::NetMean mean(wide::SobolPoints(rays), rays);
-  if (is_dark(scene)) {
-    for (std::size_t site = 0; site < samples.size(); ++site) mean.put(wide::NetMean::Moments{}, site, samples);
-    return {};
-  }
+  if (is_dark(scene)) return {};
   const LinkRound round{.first = 0, .rays = rays, .order = mean.order(), .blocks = {}};
   const RayValues brought(scene, {.channels = std::size_t(samples.channels)});
   const GatherSettings request{
@@ -46,6 +39,7 @@ TraceCounters add_sky_light(const Volume& volume, const Scene& scene, const Trac
     block.begins.assign(gathered.sites.size() + 1, 0);
     for (std::size_t place = 0; place < gathered.sites.size(); ++place) {
       const std::uint32_t site = gathered.sites[place];
+      if (samples.sites.normals[site] == Vec3f(0.0f)) continue;
       const float isovalue = samples.sites.isovalues[site];
       mark_hits(gathered, place, round, block);
       auto moments = brought.known_moments(round, block, place, isovalue);
@@ -54,7 +48,7 @@ TraceCounters add_sky_light(const Volume& volume, const Scene& scene, const Trac
         for (std::size_t a = 0; a < 3; ++a) towards[a] = &gathered.direction[a][place * rays];
         moments = brought.moments(round, block, place, isovalue, towards, scratch);
       }
-      mean.put(*moments, site, samples);
+      mean.add(*moments, site, samples);
     }
   });
 }

@@ -7,12 +7,9 @@
 
 namespace isolux {
 
-/// Whether e without reflections is all a matter of which rays escape and where to: no light sources, and no directions
-/// that are worth drawing for the environment's sake.
-[[nodiscard]] bool is_sky_light(const Scene& scene);
-
-/// Such e of samples.sites and its variance, in samples.channels channels: one question a ray, and nothing kept of it;
-/// no question where there is no light at all. \pre is_sky_light(); radiance and variance have their sizes
+/// Adds what rays bring without reflections, light of the environment and what they hit shines, to e of samples.sites
+/// and to its variance: one question a ray, and nothing kept of it; no question where there is no light at all.
+/// \pre radiance and variance are there
 [[nodiscard]] TraceCounters add_sky_light(const Volume& volume, const Scene& scene, const TraceSettings& settings,
                                           const Run& run, SampleSet& samples);
 

@@ -6,14 +6,13 @@
 #include <cmath>
 #include <cstddef>
 #include <glm/geometric.hpp>
-#include <mutex>
 #include <numbers>
 #include <vector>
 
 #include "light_sources.h"
 #include "wide/aimer.h"
 #include "wide/net_mean.h"
-#include "wide/site_blocks.h"
+#include "wide/trace_blocks.h"
 
 namespace isolux {
 namespace {
@@ -97,17 +96,9 @@ TraceCounters add_sun_light(const Volume& volume, OuterSide outer, const SunLigh
                             const TraceSettings& settings, const Run& run, SampleSet& samples) {
   const auto rays = std::size_t(settings.rays);
   const SunBlock of_block(volume, sun, number, rays, run.seed);
-  const wide::BlockRequest request{
-      .outer = outer, .rays_per_site = rays, .sites_per_block = wide::sites_per_batch(rays)};
-  TraceCounters total;
-  std::mutex adding;
-  wide::for_each_block(volume, samples.sites, request, run, "trace", [&](const wide::SiteBlock& block) {
-    TraceCounters counters;
-    of_block.light(block, samples, counters);
-    const std::scoped_lock lock(adding);
-    isolux::add(total, counters);
-  });
-  return total;
+  return wide::trace_blocks(
+      volume, samples.sites, outer, rays, run,
+      [&](const wide::SiteBlock& block, TraceCounters& counters) { of_block.light(block, samples, counters); });
 }
 
 }  // namespace isolux

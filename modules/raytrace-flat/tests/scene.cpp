@@ -7,6 +7,7 @@
 #include <limits>
 #include <numbers>
 
+#include "bright_parts.h"
 #include "directions.h"
 #include "environment.h"
 #include "path_sampler.h"
@@ -126,13 +127,36 @@ TEST(Environment, ImageSamplesHaveTheDensityTheyState) {
 }
 
 TEST(Environment, BlackOnesDoNotShine) {
-  EXPECT_FALSE(PreparedEnvironment(Environment(UniformEnvironment{Vec3f(0.0f)})).shines());
+  const Environment dark = UniformEnvironment{Vec3f(0.0f)};
+  EXPECT_FALSE(EnvironmentView(dark).shines());
   const Environment black = ImageEnvironment{.width = 1, .height = 1, .pixels = {Vec3f(0.0f)}};
   EXPECT_FALSE(PreparedEnvironment(black).shines());
   EXPECT_FALSE(PreparedEnvironment(black).has_samples());
 }
 
 // In base 2, any 2^m consecutive paths from a multiple of 2^m have one point in every elementary box of area 2^-m.
+TEST(Environment, OnlyWhatIsMuchBrighterIsPartedFromAnImage) {
+  Scene scene = furnace(0.5f);
+  EXPECT_EQ(&SceneParts(scene).soft(), &scene);
+  EXPECT_EQ(SceneParts(scene).bright(), nullptr);
+  ImageEnvironment image{.width = 8, .height = 4, .pixels = std::vector<Vec3f>(32, {0.5f, 0.25f, 1.0f})};
+  image.pixels[9] = {1.5f, 1.0f, 1.0f};  // some three times the mean, as clouds are
+  scene.environment = image;
+  EXPECT_EQ(SceneParts(scene).bright(), nullptr);
+  EXPECT_FALSE(has_lamps(scene));
+  image.pixels[12] = {900.0f, 800.0f, 0.0f};
+  scene.environment = image;
+  EXPECT_TRUE(has_lamps(scene));
+  const SceneParts parts(scene);
+  ASSERT_NE(parts.bright(), nullptr);
+  const auto& soft = std::get<ImageEnvironment>(parts.soft().environment);
+  for (std::size_t i = 0; i < image.pixels.size(); ++i) {
+    EXPECT_EQ(parts.bright()->pixels[i] == Vec3f(0.0f), i != 12) << i;
+    const Vec3f sum = soft.pixels[i] + parts.bright()->pixels[i];
+    for (int c = 0; c < 3; ++c) EXPECT_FLOAT_EQ(sum[c], image.pixels[i][c]) << i;
+  }
+}
+
 TEST(PathSampler, IsANetInEveryPairOfDimensions) {
   for (const std::uint64_t site : {0ull, 1ull, 12345678901ull}) {
     const PathSampler numbers(7, site);

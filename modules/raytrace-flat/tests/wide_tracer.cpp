@@ -99,6 +99,11 @@ TEST(WideTracer, AgreesWithScalarUnderAnImageOfTheSky) {
   image.pixels[5] = Vec3f(20.0f);
   scene.environment = image;
   expect_same_light(gyroid(32), scene, 64, 1);
+  // Without reflections the bright pixel is aimed at apart from the others, beside lamps of either kind.
+  expect_same_light(gyroid(32), scene, 64, 0);
+  scene.lights.emplace_back(SunLight{.direction = {1.0f, 0.0f, 1.0f}, .irradiance = Vec3f(0.5f)});
+  scene.lights.emplace_back(SphereLight{.center = {0.5f, 0.5f, 1.5f}, .radius = 0.3f, .radiance = Vec3f(2.0f)});
+  expect_same_light(gyroid(32), scene, 64, 0);
 }
 
 TEST(WideTracer, KeepsTheWhiteFurnaceWhite) {

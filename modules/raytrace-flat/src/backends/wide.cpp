@@ -2,17 +2,18 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <mutex>
 #include <utility>
 #include <variant>
 #include <vector>
 
+#include "bright_light.h"
+#include "bright_parts.h"
 #include "sky_light.h"
 #include "sun_light.h"
 #include "trace_request.h"
 #include "wide/net_mean.h"
 #include "wide/path_waves.h"
-#include "wide/site_blocks.h"
+#include "wide/trace_blocks.h"
 
 namespace isolux {
 namespace {
@@ -47,8 +48,7 @@ class WideTracer final : public FlatTracer {
   void light(const Volume& volume, const Scene& scene, const TraceSettings& settings, const Run& run,
              SampleSet& samples, TraceCounters& counters) const {
     samples.channels = is_grey(scene) ? 1 : 3;
-    samples.radiance.resize(samples.size() * std::size_t(samples.channels));
-    samples.variance.resize(samples.size());
+    wide::put_darkness(samples, std::size_t(settings.rays));
     if (settings.bounces == 0) {
       without_reflections(volume, scene, settings, run, samples, counters);
     } else {
@@ -56,16 +56,16 @@ class WideTracer final : public FlatTracer {
     }
   }
 
-  /// Suns and what is seen of the sky apart; their sums and variances add up.
+  /// What is seen of the sky, suns and other lamps each by what asks least; their sums and variances add up.
   void without_reflections(const Volume& volume, const Scene& scene, const TraceSettings& settings, const Run& run,
                            SampleSet& samples, TraceCounters& counters) const {
-    Scene rest = scene;
-    std::erase_if(rest.lights, [](const Light& light) { return std::holds_alternative<SunLight>(light); });
-    if (is_sky_light(rest)) {
-      add(counters, add_sky_light(volume, rest, settings, run, samples));
-    } else {
-      by_paths(volume, rest, settings, run, samples, counters);
-    }
+    Scene lamps = scene;
+    std::erase_if(lamps.lights, [](const Light& light) { return std::holds_alternative<SunLight>(light); });
+    if (!lamps.lights.empty()) by_paths(volume, lamps_of(lamps), settings, run, samples, counters);
+    const SceneParts parts(scene);
+    add(counters, add_sky_light(volume, parts.soft(), settings, run, samples));
+    if (parts.bright() != nullptr)
+      add(counters, add_bright_light(volume, scene.outer, *parts.bright(), settings, run, samples));
     for (std::size_t i = 0; i < scene.lights.size(); ++i)
       if (const auto* sun = std::get_if<SunLight>(&scene.lights[i]))
         add(counters, add_sun_light(volume, scene.outer, *sun, std::uint32_t(i), settings, run, samples));
@@ -74,16 +74,9 @@ class WideTracer final : public FlatTracer {
   void by_paths(const Volume& volume, const Scene& scene, const TraceSettings& settings, const Run& run,
                 SampleSet& samples, TraceCounters& counters) const {
     const wide::PathWaves waves(volume, scene, settings, options_.limits, run.seed, samples.sites);
-    const wide::BlockRequest request{.outer = scene.outer,
-                                     .rays_per_site = waves.aimer().rays(),
-                                     .sites_per_block = wide::sites_per_batch(waves.aimer().rays())};
-    std::mutex adding;
-    wide::for_each_block(volume, samples.sites, request, run, "trace", [&](const wide::SiteBlock& block) {
-      TraceCounters part;
-      waves.light(block, samples, part);
-      const std::scoped_lock lock(adding);
-      add(counters, part);
-    });
+    add(counters, wide::trace_blocks(
+                      volume, samples.sites, scene.outer, waves.aimer().rays(), run,
+                      [&](const wide::SiteBlock& block, TraceCounters& part) { waves.light(block, samples, part); }));
   }
 
   Options options_;

@@ -42,14 +42,6 @@ NetMean::Moments NetMean::moments(std::span<const Vec3> values) const {
   return result;
 }
 
-void NetMean::put(const Moments& moments, std::size_t site, SampleSet& samples) const {
-  const auto channels = std::size_t(samples.channels);
-  const bool is_lit = samples.sites.normals[site] != Vec3f(0.0f);
-  for (std::size_t c = 0; c < channels; ++c) samples.radiance[site * channels + c] = 0.0f;
-  samples.variance[site] = is_lit && order_.size() > 1 ? 0.0f : kUnknownVariance;
-  if (is_lit) add(moments, site, samples);
-}
-
 void NetMean::add(const Moments& moments, std::size_t site, SampleSet& samples) const {
   const auto channels = std::size_t(samples.channels);
   const auto n = double(order_.size());
@@ -61,6 +53,13 @@ void NetMean::add(const Moments& moments, std::size_t site, SampleSet& samples) 
   if (n > 1.0)
     samples.variance[site] =
         float(std::min(double(samples.variance[site]) + variance / (2.0 * (n - 1.0) * n), double(kUnknownVariance)));
+}
+
+void put_darkness(SampleSet& samples, std::size_t rays) {
+  samples.radiance.assign(samples.size() * std::size_t(samples.channels), 0.0f);
+  samples.variance.resize(samples.size());
+  for (std::size_t site = 0; site < samples.size(); ++site)
+    samples.variance[site] = rays > 1 && samples.sites.normals[site] != Vec3f(0.0f) ? 0.0f : kUnknownVariance;
 }
 
 std::vector<std::size_t> choose_probes(const Sites& sites) {

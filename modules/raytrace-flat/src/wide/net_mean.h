@@ -27,19 +27,18 @@ class NetMean {
   /// Numbers of the rays, less the first: neighbours of this list are neighbouring strata.
   [[nodiscard]] const std::vector<std::uint32_t>& order() const { return order_; }
 
-  /// Writes e and its squared standard error for a site, from one value a ray. The variance is that of neighbouring
-  /// strata (successive differences, von Neumann 1941): plain variance / n would count the differences between far
-  /// strata, which the net has removed. Rather too large still: see calibrate_variance.
-  void put(std::span<const Vec3> values, std::size_t site, SampleSet& samples) const {
-    put(moments(values), site, samples);
-  }
-  void put(const Moments& moments, std::size_t site, SampleSet& samples) const;
-  /// Adds independent light of a site with a normal to what is there.
+  /// Adds the light of a site with a normal to e, and its squared standard error to the variance, which counts lights
+  /// as independent. The variance is that of neighbouring strata (successive differences, von Neumann 1941): plain
+  /// variance / n would count the differences between far strata, which the net has removed. Rather too large still:
+  /// see calibrate_variance. \pre put_darkness()
   void add(const Moments& moments, std::size_t site, SampleSet& samples) const;
 
  private:
   std::vector<std::uint32_t> order_;  ///< along a curve of Morton's
 };
+
+/// What light is added to: e = 0, of known error where there is a normal and more than one ray.
+void put_darkness(SampleSet& samples, std::size_t rays);
 
 /// The sites with a normal whose light is found twice, to know by how much NetMean's variances are too large: all of
 /// few, one of 64 of many.

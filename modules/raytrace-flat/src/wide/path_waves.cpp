@@ -86,8 +86,11 @@ void PathWaves::light(const SiteBlock& block, SampleSet& samples, TraceCounters&
     arrive(block, wave);
   }
   const std::size_t rays = aimer_.rays();
-  for (std::size_t s = 0; s < block.sites.size(); ++s)
-    mean_.put(std::span(wave.value).subspan(s * rays, rays), block.sites[s], samples);
+  for (std::size_t s = 0; s < block.sites.size(); ++s) {
+    const std::uint32_t site = block.sites[s];
+    if (samples.sites.normals[site] == Vec3f(0.0f)) continue;
+    mean_.add(mean_.moments(std::span(wave.value).subspan(s * rays, rays)), site, samples);
+  }
 }
 
 bool PathWaves::is_dark(const Wave& wave) const {

@@ -22,6 +22,7 @@ struct LinkAim;
 struct RayCounts;
 struct RoundRequest;
 struct TargetLight;
+class SceneParts;
 
 /// What is kept of each ray.
 enum class LinkEnds : std::uint8_t {
@@ -122,11 +123,11 @@ class LightLinks {
 
   LightLinks(const Volume& volume, Sites sites, const LinkSettings& settings, const Run& run, WithoutProbes);
   void trace(std::size_t first, std::size_t rays, std::span<const std::uint32_t> numbers, const Run& run);
-  [[nodiscard]] SampleSet lamp_light(const Scene& scene, const SolveSettings& settings, TraceCounters& counters,
+  [[nodiscard]] SampleSet lamp_light(const SceneParts& parts, const SolveSettings& settings, TraceCounters& counters,
                                      const Run& run) const;
   /// The last reflection, of the light given, with what it takes to know its noise.
-  void reflect_last(const Scene& scene, const SampleSet& lamps, const TargetLight& light, const SolveSettings& settings,
-                    Solution& solution, const Run& run) const;
+  void reflect_last(const SceneParts& parts, const SampleSet& lamps, const TargetLight& light,
+                    const SolveSettings& settings, Solution& solution, const Run& run) const;
   /// e without reflections by the rays that are kept, but of sites that have no place (kLeftOut; empty: all have one).
   [[nodiscard]] SampleSet straight(const Scene& scene, const SampleSet& lamps, std::span<const std::uint32_t> places,
                                    const Run& run) const;

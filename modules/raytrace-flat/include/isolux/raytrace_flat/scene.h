@@ -91,6 +91,9 @@ struct Scene {
 /// True if every colour of the scene is grey: then one channel is enough.
 [[nodiscard]] bool is_grey(const Scene& scene);
 
+/// Whether light is aimed at: light sources, or parts of an image that are many times brighter than the rest.
+[[nodiscard]] bool has_lamps(const Scene& scene);
+
 /// \throw InvalidInput, naming what and why, for colours that are negative or not finite, albedos above 1, keys that do
 /// not rise, directions and areas of length zero, and images without pixels.
 void require_valid(const Scene& scene);
