@@ -17,7 +17,8 @@ inline constexpr int kFirstRaysByNeed = 16;
 /// What is done next: cells that fall apart into eight, and traced texels whose rays are doubled.
 struct NeedSteps {
   std::vector<TexelPyramid::Cell> refined;
-  std::vector<std::size_t> doubled;  ///< texels, rising
+  std::vector<std::uint32_t> doubled;  ///< places in TexelPyramid::texels(), rising
+  double refined_part = 0.0;           ///< of all texels in cells, those whose cells fall apart into single texels
 };
 
 /// The steps that take away most squared error for a ray, as many as bring the error to `goal` times what it is, by the
