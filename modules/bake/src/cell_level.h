@@ -18,13 +18,13 @@ struct CellLevel {
   };
   static constexpr std::uint32_t kNone = 0xFFFFFFFFu;
 
-  Index3 size{0};                    ///< cells, whether there are or not
-  Index3 size_above{0};              ///< 0 on the highest level
-  std::vector<std::uint32_t> first;  ///< of a cell of the level above: where its eight begin, or kNone
-  std::vector<std::uint32_t> above;  ///< of eight: the number of the cell that fell apart
-  std::vector<std::uint8_t> leaf;    ///< of a cell that there is: it has not fallen apart
-  std::vector<Figures> raw;          ///< of a cell's own corners; negative noise: none is lit
-  std::vector<Figures> figures;      ///< with its neighbours
+  Index3 size{0};                      ///< cells, whether there are or not
+  Index3 size_above{0};                ///< 0 on the highest level
+  std::vector<std::uint32_t> first{};  ///< of a cell of the level above: where its eight begin, or kNone
+  std::vector<std::uint32_t> above{};  ///< of eight: the number of the cell that fell apart
+  std::vector<std::uint8_t> leaf{};    ///< of a cell that there is: it has not fallen apart
+  std::vector<Figures> raw{};          ///< of a cell's own corners; negative noise: none is lit
+  std::vector<Figures> figures{};      ///< with its neighbours
 
   static std::uint32_t number(const Index3& size, const Index3& i) {
     return (std::uint32_t(i.z) * std::uint32_t(size.y) + std::uint32_t(i.y)) * std::uint32_t(size.x) +

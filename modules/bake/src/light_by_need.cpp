@@ -32,8 +32,8 @@ constexpr int kMostRoundsByNeed = 16;
 constexpr double kProgress = 0.97;
 constexpr int kMostStalled = 2;
 constexpr std::size_t kTexelsABlock = 16384;
-/// Where more of the texels would come to be traced at once, predicting the others is not worth its price.
-constexpr double kRough = 0.5;
+/// Where more of the texels are traced each, predicting the others is not worth its price.
+constexpr double kRough = 0.8;
 
 class ByNeed {
  public:
@@ -167,10 +167,10 @@ class ByNeed {
   /// Steps that gain most for a ray, as many as the target is expected to need. False if none gains anything.
   bool take_steps(const HeldOut::SquaredError& found) {
     const double wanted = settings_.target_rmse * settings_.target_rmse;
-    if (pyramid_.is_all_traced()) return double_rays(0.97 * wanted / (found.mean + found.standard_error));
+    if (pyramid_.is_all_traced()) return double_rays(0.88 * wanted / (found.mean + found.standard_error));
     // The error found at the texels held out says how far the figures are off.
     const NeedSteps steps = choose_steps(pyramid_, 0.9 * wanted / found.mean, run_);
-    if (steps.refined_part > kRough) {
+    if (steps.single_part > kRough) {
       pyramid_.refine_all();
       return true;
     }

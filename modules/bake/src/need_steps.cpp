@@ -34,6 +34,7 @@ constexpr std::size_t kRanks = std::size_t(1) << 13;
 struct Sums {
   double squared = 0.0;  ///< error
   double texels = 0.0;
+  double single = 0.0;  ///< of them, those that are traced each
 };
 
 std::vector<Step> refinements(const TexelPyramid& pyramid, Sums& sums) {
@@ -43,7 +44,10 @@ std::vector<Step> refinements(const TexelPyramid& pyramid, Sums& sums) {
     const double before = squared_error(figures, cell.level);
     sums.squared += texels * before;
     sums.texels += texels;
-    if (cell.level + 1 == TexelPyramid::kLevels) return;
+    if (cell.level + 1 == TexelPyramid::kLevels) {
+      sums.single += texels;
+      return;
+    }
     CellFigures finer = figures;
     finer.roughness *= kHalved;
     const double gain = texels * (before - squared_error(finer, cell.level + 1));
@@ -98,17 +102,16 @@ NeedSteps choose_steps(const TexelPyramid& pyramid, double goal, const Run& run)
   add_doublings(pyramid, run, steps);
   const std::size_t lowest = lowest_rank(steps, (1.0 - goal) * sums.squared);
   NeedSteps chosen;
-  double to_single = 0.0;
   for (const Step& step : steps) {
     if (rank_of(step) < lowest) continue;
     if (step.level == kDoubles) {
       chosen.doubled.push_back(step.at);
     } else {
       chosen.refined.push_back(pyramid.cell_of(step.level, step.at));
-      if (step.level + 2 == TexelPyramid::kLevels) to_single += double(pyramid.texels_of(chosen.refined.back()));
+      if (step.level + 2 == TexelPyramid::kLevels) sums.single += double(pyramid.texels_of(chosen.refined.back()));
     }
   }
-  chosen.refined_part = sums.texels > 0.0 ? to_single / sums.texels : 0.0;
+  chosen.single_part = sums.texels > 0.0 ? sums.single / sums.texels : 0.0;
   return chosen;
 }
 

@@ -18,7 +18,7 @@ inline constexpr int kFirstRaysByNeed = 16;
 struct NeedSteps {
   std::vector<TexelPyramid::Cell> refined;
   std::vector<std::uint32_t> doubled;  ///< places in TexelPyramid::texels(), rising
-  double refined_part = 0.0;           ///< of all texels in cells, those whose cells fall apart into single texels
+  double single_part = 0.0;            ///< of all texels in cells, those that are traced each once this is done
 };
 
 /// The steps that take away most squared error for a ray, as many as bring the error to `goal` times what it is, by the
