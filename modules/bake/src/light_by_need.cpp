@@ -32,6 +32,7 @@ constexpr int kMostRoundsByNeed = 16;
 constexpr double kProgress = 0.97;
 constexpr int kMostStalled = 2;
 constexpr std::size_t kTexelsABlock = 16384;
+constexpr std::size_t kMostTexels = 0xFFFF0000u;  ///< they are numbered in 32 bits
 /// Where more of the texels are traced each, predicting the others is not worth its price.
 constexpr double kRough = 0.8;
 
@@ -69,7 +70,6 @@ class ByNeed {
       stalled = round > 0 && squared_error_ > kProgress * before ? stalled + 1 : 0;
       if (stalled == kMostStalled) break;
       if (!take_steps(found)) break;
-      trace_wanted();
     }
     result.seconds["trace"] = watch.seconds() - result.seconds["bounces"];
     add(result.counters, held_out.counters());
@@ -91,7 +91,9 @@ class ByNeed {
     return {.bounces = settings_.trace.bounces, .gradient = settings_.trace.gradient};
   }
 
-  void trace_wanted() {
+  /// The place of the first texel that is new.
+  std::size_t trace_wanted() {
+    const std::size_t first = pyramid_.texels().size();
     const std::vector<std::size_t> texels = pyramid_.wanted();
     Sites sites = sites_.make(texels);
     if (links_ != nullptr) {
@@ -101,11 +103,12 @@ class ByNeed {
     } else {
       links_ = std::make_unique<LightLinks>(volume_, std::move(sites), links(kFirstRaysByNeed), run_);
     }
-    if (!reflects()) return;
+    if (!reflects()) return first;
     // Where light was predicted until now, the prediction is a start.
     for (const std::size_t texel : texels)
       for (int c = 0; c < channels_; ++c)
         start_.push_back(light_.empty() ? 0.0f : light_[texel * std::size_t(channels_) + std::size_t(c)]);
+    return first;
   }
 
   /// The light of the traced texels, and of the others by prediction.
@@ -172,10 +175,15 @@ class ByNeed {
     const NeedSteps steps = choose_steps(pyramid_, 0.9 * wanted / found.mean, run_);
     if (steps.single_part > kRough) {
       pyramid_.refine_all();
+      trace_wanted();
       return true;
     }
-    links_->extend(steps.doubled, run_);
     pyramid_.refine(steps.refined);
+    std::vector<std::uint32_t> doubled = steps.doubled;
+    for (std::size_t place = trace_wanted(); place < pyramid_.texels().size(); ++place)
+      doubled.push_back(std::uint32_t(place));
+    static_assert(kRaysByNeed == 2 * kFirstRaysByNeed);
+    links_->extend(doubled, run_);
     return !steps.refined.empty() || !steps.doubled.empty();
   }
 
@@ -270,7 +278,10 @@ BakeResult bake_by_need(const Volume& volume, const Scene& scene, const BakeSett
   const std::string reason = why_not(settings, scene);
   if (!reason.empty()) throw InvalidInput("texels cannot be traced by need: " + reason);
   require_lightable(volume, settings);
-  return ByNeed(volume, scene, settings, texel_lattice(volume.lattice(), settings), run).light();
+  const Lattice texels = texel_lattice(volume.lattice(), settings);
+  if (texels.count() > kMostTexels)
+    throw InvalidInput(fmt::format("{} texels cannot be traced by need: at most {}", texels.count(), kMostTexels));
+  return ByNeed(volume, scene, settings, texels, run).light();
 }
 
 }  // namespace isolux

@@ -51,7 +51,7 @@ std::vector<Step> refinements(const TexelPyramid& pyramid, Sums& sums) {
     CellFigures finer = figures;
     finer.roughness *= kHalved;
     const double gain = texels * (before - squared_error(finer, cell.level + 1));
-    if (gain > 0.0) steps.push_back({pyramid.number_of(cell), cell.level, float(gain), 7.0f * float(kFirstRaysByNeed)});
+    if (gain > 0.0) steps.push_back({pyramid.number_of(cell), cell.level, float(gain), 7.0f * float(kRaysByNeed)});
   });
   return steps;
 }

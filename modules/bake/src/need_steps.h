@@ -8,8 +8,10 @@
 
 namespace isolux {
 
-/// Rays of a texel when it is first traced.
+/// Rays of a texel when it is first traced: a corner of the largest cells, or where all texels are traced.
 inline constexpr int kFirstRaysByNeed = 16;
+/// Rays of a corner of smaller cells: light changes there, and fewer would not tell where.
+inline constexpr int kRaysByNeed = 32;
 
 /// Mean squared error of a cell's texels, by the figures of the cell.
 [[nodiscard]] double squared_error(const CellFigures& figures, int level);
