@@ -19,6 +19,8 @@
 #include "bake_parts.h"
 #include "held_out.h"
 #include "need_steps.h"
+#include "ray_budget.h"
+#include "standard_error.h"
 #include "texel_pyramid.h"
 #include "texel_site_maker.h"
 
@@ -30,6 +32,9 @@ constexpr int kMostRoundsByNeed = 16;
 constexpr double kProgress = 0.97;
 constexpr int kMostStalled = 2;
 constexpr std::size_t kTexelsABlock = 16384;
+constexpr std::size_t kMostTexels = 0xFFFF0000u;  ///< they are numbered in 32 bits
+/// Where more of the texels are traced each, predicting the others is not worth its price.
+constexpr double kRough = 0.8;
 
 class ByNeed {
  public:
@@ -64,8 +69,7 @@ class ByNeed {
       if (reached || round == kMostRoundsByNeed) break;
       stalled = round > 0 && squared_error_ > kProgress * before ? stalled + 1 : 0;
       if (stalled == kMostStalled) break;
-      if (!take_steps()) break;
-      trace_wanted();
+      if (!take_steps(found)) break;
     }
     result.seconds["trace"] = watch.seconds() - result.seconds["bounces"];
     add(result.counters, held_out.counters());
@@ -87,7 +91,9 @@ class ByNeed {
     return {.bounces = settings_.trace.bounces, .gradient = settings_.trace.gradient};
   }
 
-  void trace_wanted() {
+  /// The place of the first texel that is new.
+  std::size_t trace_wanted() {
+    const std::size_t first = pyramid_.texels().size();
     const std::vector<std::size_t> texels = pyramid_.wanted();
     Sites sites = sites_.make(texels);
     if (links_ != nullptr) {
@@ -97,11 +103,12 @@ class ByNeed {
     } else {
       links_ = std::make_unique<LightLinks>(volume_, std::move(sites), links(kFirstRaysByNeed), run_);
     }
+    if (!reflects()) return first;
     // Where light was predicted until now, the prediction is a start.
     for (const std::size_t texel : texels)
       for (int c = 0; c < channels_; ++c)
         start_.push_back(light_.empty() ? 0.0f : light_[texel * std::size_t(channels_) + std::size_t(c)]);
-    traced_texels_.insert(traced_texels_.end(), texels.begin(), texels.end());
+    return first;
   }
 
   /// The light of the traced texels, and of the others by prediction.
@@ -115,34 +122,30 @@ class ByNeed {
     SolveSettings settings = solve_settings();
     if (settings.bounces != kAllBounces) --settings.bounces;
     const auto to_grid = [&](const SampleSet& samples) { return reflecting_grid(samples.radiance); };
-    const Solution solution =
+    Solution solution =
         links_->solve(scene_, settings, to_grid, run_, light_.empty() ? std::span<const float>{} : start_);
     start_ = solution.samples.radiance;
     result.sweeps += solution.sweeps + 1;
-    predict(solution.samples);
+    predict(std::move(solution.samples));
     // Once more by the prediction itself: corners that stand for texels are one draw, the same for all rays.
     fill_unlit_texels();
     predict(links_->reflecting(scene_, light_, settings, run_));
     result.seconds["bounces"] += watch.seconds();
   }
 
-  void predict(const SampleSet& samples) {
-    const auto channels = std::size_t(channels_);
-    TexelPyramid::Traced& traced = pyramid_.traced();
-    for (std::size_t i = 0; i < traced_texels_.size(); ++i) {
-      const std::size_t texel = traced_texels_[i];
-      std::copy_n(&samples.radiance[i * channels], channels, &traced.light[texel * channels]);
-      traced.variance[texel] = samples.variance[i];
-      traced.rays[texel] = links_->rays()[i];
-    }
-    pyramid_.update(run_);
+  void predict(SampleSet samples) {
+    traced_light_ = std::move(samples.radiance);
+    variance_ = std::move(samples.variance);
+    pyramid_.update({.light = traced_light_, .variance = variance_, .rays = links_->rays()}, run_);
+    light_ = {};
     light_ = pyramid_.light(run_);
   }
 
   /// Whose light a ray that ends at a texel reads: one site's a texel, so that a sweep costs a pass over the texels.
   void draw_labels() {
     labels_.assign(texels_.count(), kNoLabel);
-    for (std::size_t i = 0; i < traced_texels_.size(); ++i) labels_[traced_texels_[i]] = std::uint32_t(i);
+    const std::span<const std::uint32_t> traced = pyramid_.texels();
+    for (std::size_t i = 0; i < traced.size(); ++i) labels_[traced[i]] = std::uint32_t(i);
     pyramid_.draw_labels(labels_, mix_bits(run_.seed ^ 0x6c6162656c), run_);
   }
 
@@ -165,18 +168,32 @@ class ByNeed {
   }
 
   /// Steps that gain most for a ray, as many as the target is expected to need. False if none gains anything.
-  bool take_steps() {
+  bool take_steps(const HeldOut::SquaredError& found) {
+    const double wanted = settings_.target_rmse * settings_.target_rmse;
+    if (pyramid_.is_all_traced()) return double_rays(0.88 * wanted / (found.mean + found.standard_error));
     // The error found at the texels held out says how far the figures are off.
-    const double goal = 0.9 * settings_.target_rmse * settings_.target_rmse / squared_error_;
-    const NeedSteps steps = choose_steps(pyramid_, goal, run_);
-    std::vector<std::uint8_t> doubled(texels_.count(), 0);
-    for (const std::size_t texel : steps.doubled) doubled[texel] = 1;
-    std::vector<std::uint32_t> sites;
-    for (std::size_t i = 0; i < traced_texels_.size(); ++i)
-      if (doubled[traced_texels_[i]] != 0) sites.push_back(std::uint32_t(i));
-    links_->extend(sites, run_);
+    const NeedSteps steps = choose_steps(pyramid_, 0.9 * wanted / found.mean, run_);
+    if (steps.single_part > kRough) {
+      pyramid_.refine_all();
+      trace_wanted();
+      return true;
+    }
     pyramid_.refine(steps.refined);
+    std::vector<std::uint32_t> doubled = steps.doubled;
+    for (std::size_t place = trace_wanted(); place < pyramid_.texels().size(); ++place)
+      doubled.push_back(std::uint32_t(place));
+    static_assert(kRaysByNeed == 2 * kFirstRaysByNeed);
+    links_->extend(doubled, run_);
     return !steps.refined.empty() || !steps.doubled.empty();
+  }
+
+  /// Where all texels are traced only rays are left to be chosen: by each one's own variance.
+  bool double_rays(double goal) {
+    const double error = standard_error(variance_);
+    const RayBudget budget{.mean_variance = goal * error * error};
+    const std::vector<std::uint32_t> sites = sites_to_double(variance_, links_->rays(), budget);
+    links_->extend(sites, run_);
+    return !sites.empty();
   }
 
   void finish(BakeResult& result) {
@@ -188,7 +205,7 @@ class ByNeed {
     add(result.counters, links_->counters());
     const std::vector<std::uint8_t> lit = pyramid_.lit();
     result.unlit_texels = std::size_t(std::count(lit.begin(), lit.end(), std::uint8_t(0)));
-    result.sites = traced_texels_.size();
+    result.sites = pyramid_.texels().size();
     result.skipped["texels_predicted"] = texels_.count() - result.unlit_texels - result.sites;
     result.rmse_estimate = std::sqrt(squared_error_);
     if (settings_.wants_error_grid) result.error = filled(errors(lit), 1, lit);
@@ -209,6 +226,8 @@ class ByNeed {
     std::vector<float> squared = pyramid_.of_cells([](const TexelPyramid::Cell& cell, const CellFigures& figures) {
       return float(squared_error(figures, cell.level));
     });
+    if (pyramid_.is_all_traced())
+      for (std::size_t i = 0; i < variance_.size(); ++i) squared[pyramid_.texels()[i]] = variance_[i];
     double sum = 0.0;
     std::size_t count = 0;
     for (std::size_t t = 0; t < lit.size(); ++t) {
@@ -230,9 +249,10 @@ class ByNeed {
   TexelSiteMaker sites_;
   TexelPyramid pyramid_;
   std::unique_ptr<LightLinks> links_;
-  std::vector<std::size_t> traced_texels_;  ///< the links' sites, in their order
-  std::vector<float> start_;                ///< e of the links' sites as far as it is known
-  std::vector<std::uint32_t> labels_;       ///< of a texel, the site that stands for it where light is reflected
+  std::vector<float> traced_light_;    ///< of pyramid_.texels(), which are the links' sites
+  std::vector<float> variance_;        ///< of that
+  std::vector<float> start_;           ///< e of the links' sites as far as it is known
+  std::vector<std::uint32_t> labels_;  ///< of a texel, the site that stands for it where light is reflected
   std::vector<float> light_;
   double squared_error_ = 0.0;
 };
@@ -258,7 +278,10 @@ BakeResult bake_by_need(const Volume& volume, const Scene& scene, const BakeSett
   const std::string reason = why_not(settings, scene);
   if (!reason.empty()) throw InvalidInput("texels cannot be traced by need: " + reason);
   require_lightable(volume, settings);
-  return ByNeed(volume, scene, settings, texel_lattice(volume.lattice(), settings), run).light();
+  const Lattice texels = texel_lattice(volume.lattice(), settings);
+  if (texels.count() > kMostTexels)
+    throw InvalidInput(fmt::format("{} texels cannot be traced by need: at most {}", texels.count(), kMostTexels));
+  return ByNeed(volume, scene, settings, texels, run).light();
 }
 
 }  // namespace isolux

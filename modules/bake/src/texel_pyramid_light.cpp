@@ -26,7 +26,7 @@ void TexelPyramid::for_each_texel(const Cell& cell, const Visit& visit) const {
   }
 }
 
-void TexelPyramid::predict(const Cell& cell, const std::vector<float>& smooth, std::vector<float>& light) const {
+void TexelPyramid::predict(const Cell& cell, std::vector<float>& light) const {
   const auto at = corners(cell);
   for_each_texel(cell, [&](std::size_t texel, const Vec3& u) {
     if (!is_predicted(texel)) return;
@@ -35,7 +35,7 @@ void TexelPyramid::predict(const Cell& cell, const std::vector<float>& smooth, s
       const Index3 s = corner_step(c);
       double w = 1.0;
       for (int a = 0; a < 3; ++a) w *= s[a] != 0 ? u[a] : 1.0 - u[a];
-      for (std::size_t k = 0; k < channels_; ++k) sum[k] += w * double(smooth[at[std::size_t(c)] * channels_ + k]);
+      for (std::size_t k = 0; k < channels_; ++k) sum[k] += w * double(light[at[std::size_t(c)] * channels_ + k]);
     }
     for (std::size_t k = 0; k < channels_; ++k) light[texel * channels_ + k] = float(sum[k]);
   });
@@ -43,10 +43,10 @@ void TexelPyramid::predict(const Cell& cell, const std::vector<float>& smooth, s
 
 void TexelPyramid::for_each_predicting(const Run& run, const std::function<void(const Cell&)>& visit) const {
   for (int l = 0; l + 1 < kLevels; ++l) {
-    const Level& level = levels_[std::size_t(l)];
+    const CellLevel& level = levels_[std::size_t(l)];
     parallel_blocks(level.leaf.size(), kBlock, run, "", [&](const Block& block) {
       for (std::size_t c = block.begin; c < block.end; ++c)
-        if (level.leaf[c] != 0) visit(cell_of(l, std::uint32_t(c)));
+        if (level.leaf[c] != 0) visit({.level = l, .at = level.at(c)});
     });
   }
 }
@@ -78,17 +78,19 @@ std::vector<float> TexelPyramid::of_cells(const std::function<float(const Cell&,
 }
 
 std::vector<float> TexelPyramid::light(const Run& run) const {
-  std::vector<float> smooth(traced_.light.size());
-  parallel_blocks(texels_.count(), kBlock, run, "", [&](const Block& block) {
-    for (std::size_t t = block.begin; t < block.end; ++t) {
-      if (level_[t] < 0) continue;
-      const double taken = 1.0 - figures_at(t).kept();
-      for (std::size_t v = t * channels_; v < (t + 1) * channels_; ++v)
-        smooth[v] = std::max(0.0f, float(double(traced_.light[v]) - taken * double(difference_[v])));
+  std::vector<float> light(texels_.count() * channels_);
+  parallel_blocks(traced_texels_.size(), kBlock, run, "", [&](const Block& block) {
+    for (std::size_t i = block.begin; i < block.end; ++i) {
+      const std::size_t texel = traced_texels_[i];
+      const double taken = is_all_traced_ ? 0.0 : 1.0 - figures_at(texel).kept();
+      for (std::size_t c = 0; c < channels_; ++c) {
+        const std::size_t v = i * channels_ + c;
+        const double off = is_all_traced_ ? 0.0 : taken * double(difference_[v]);
+        light[texel * channels_ + c] = std::max(0.0f, float(double(traced_.light[v]) - off));
+      }
     }
   });
-  std::vector<float> light = smooth;
-  for_each_predicting(run, [&](const Cell& cell) { predict(cell, smooth, light); });
+  for_each_predicting(run, [&](const Cell& cell) { predict(cell, light); });
   return light;
 }
 
