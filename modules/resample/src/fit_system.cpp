@@ -16,6 +16,12 @@ constexpr std::size_t kTerms = kNearFieldSteps.size();
 using Terms = std::array<double, kTerms>;
 static_assert(kTerms == 4, "terms are added beside four corners");
 
+/// Of the mean weight: no sample counts for nothing.
+constexpr double kLeastWeight = 1e-3;
+/// Of a row's weight where its reading is clamped. None would be Newton's method, whose step knows no bound where all
+/// rows around a texel are.
+constexpr float kClampedPart = 0.1f;
+
 }  // namespace
 
 FitSystem::FitSystem(const Volume& volume, const SampleSet& samples, const Lattice& texels, SlopeTerms slopes,
@@ -23,7 +29,8 @@ FitSystem::FitSystem(const Volume& volume, const SampleSet& samples, const Latti
     : slope_terms_(slopes), near_field_(near_field), run_(run) {
   sort_rows(volume, samples, texels, run);
   texels_.emplace(volume, texels, starts_, slopes, run);
-  if (near_field_ == NearFieldUse::kFitted) measure_near_field(volume, samples, run);
+  measure(volume, samples, run);
+  weigh_texels();
 }
 
 void FitSystem::sort_rows(const Volume& volume, const SampleSet& samples, const Lattice& texels, const Run& run) {
@@ -36,31 +43,68 @@ void FitSystem::sort_rows(const Volume& volume, const SampleSet& samples, const 
       rows_[r] = {.place = place.in_cell,
                   .isovalue = samples.sites.isovalues[place.site],
                   .openness = {},
+                  .weight = 1.0f,
                   .sample = place.site};
     }
   });
 }
 
-void FitSystem::measure_near_field(const Volume& volume, const SampleSet& samples, const Run& run) {
+void FitSystem::measure(const Volume& volume, const SampleSet& samples, const Run& run) {
   const NearField near_field(volume);
   const double outwards = near_field.outwards(samples.sites);
   for (double& step : steps_) step *= outwards;
 
-  std::vector<Terms> sums(block_count(rows_.size(), 4096), Terms{});
+  using Sums = std::array<double, kTerms + 1>;
+  std::vector<Sums> blocks(block_count(rows_.size(), 4096), Sums{});
   parallel_blocks(rows_.size(), 4096, run, "", [&](const Block& block) {
+    Sums& sums = blocks[block.index];
     for (std::size_t r = block.begin; r < block.end; ++r) {
-      const Vec3 position(samples.sites.positions[rows_[r].sample]);
+      Row& row = rows_[r];
+      const Vec3 position(samples.sites.positions[row.sample]);
       const NearField::Ahead ahead = near_field.ahead(position);
+      row.weight = float(std::sqrt(ahead.fall));
+      sums[kTerms] += double(row.weight);
+      if (near_field_ == NearFieldUse::kNone) continue;
       for (std::size_t t = 0; t < kTerms; ++t) {
-        rows_[r].openness[t] = near_field.openness(position, ahead, double(rows_[r].isovalue), steps_[t]);
-        sums[block.index][t] += double(rows_[r].openness[t]);
+        row.openness[t] = near_field.openness(position, ahead, double(row.isovalue), steps_[t]);
+        sums[t] += double(row.openness[t]);
       }
     }
   });
-  mean_openness_ = sum_layers(sums);
-  for (double& mean : mean_openness_) mean /= double(rows_.size());
+  Sums sums{};
+  for (const Sums& block : blocks) {
+    for (std::size_t t = 0; t <= kTerms; ++t) sums[t] += block[t];
+  }
+  centre_rows(sums);
+}
+
+void FitSystem::centre_rows(const std::array<double, kTerms + 1>& sums) {
+  const auto count = double(rows_.size());
+  const double weight = sums[kTerms] / count;
+  for (std::size_t t = 0; t < kTerms; ++t) mean_openness_[t] = sums[t] / count;
   for (Row& row : rows_) {
     for (std::size_t t = 0; t < kTerms; ++t) row.openness[t] -= float(mean_openness_[t]);
+    row.weight = weight > 0.0 ? float(std::max(double(row.weight) / weight, kLeastWeight)) : 1.0f;
+  }
+}
+
+void FitSystem::weigh_texels() {
+  std::vector<float> coverage(texels_->size(), 0.0f);
+  texel_weights_.assign(texels_->size(), 0.0f);
+  for_each_cell(
+      [&](const FitCorners& corners, std::span<const Row> rows, std::size_t /*first*/, std::size_t /*layer*/) {
+        std::array<float, 8> w{};
+        std::array<float, 8> s{};
+        for (const Row& row : rows) {
+          corners.weights(row.place, row.isovalue, w, s);
+          for (unsigned q = 0; q < 8; ++q) {
+            coverage[corners.texel[q]] += w[q];
+            texel_weights_[corners.texel[q]] += w[q] * row.weight;
+          }
+        }
+      });
+  for (std::size_t t = 0; t < coverage.size(); ++t) {
+    if (coverage[t] > 0.0f) texel_weights_[t] /= coverage[t];
   }
 }
 
@@ -82,7 +126,7 @@ void FitSystem::for_each_cell(const Visit& visit) const {
             (std::size_t(k) * std::size_t(size.y) + std::size_t(j)) * std::size_t(size.x) + std::size_t(i);
         const std::span rows(rows_.data() + starts_[cell], starts_[cell + 1] - starts_[cell]);
         if (rows.empty()) continue;
-        visit(texels_->corners(i, j, k), rows, std::size_t(k));
+        visit(texels_->corners(i, j, k), rows, std::size_t(starts_[cell]), std::size_t(k));
       }
     }
   };
@@ -104,17 +148,18 @@ FitVector FitSystem::prior(std::span<const float> light, std::vector<float>& cov
   FitVector x = zero();
   std::vector<double> sum(texels_->size(), 0.0);
   std::vector<double> total(texels_->size(), 0.0);
-  for_each_cell([&](const FitCorners& corners, std::span<const Row> rows, std::size_t /*layer*/) {
-    std::array<float, 8> w{};
-    std::array<float, 8> s{};
-    for (const Row& row : rows) {
-      corners.weights(row.place, row.isovalue, w, s);
-      for (unsigned q = 0; q < 8; ++q) {
-        sum[corners.texel[q]] += double(w[q]) * double(light[row.sample]);
-        total[corners.texel[q]] += double(w[q]);
-      }
-    }
-  });
+  for_each_cell(
+      [&](const FitCorners& corners, std::span<const Row> rows, std::size_t /*first*/, std::size_t /*layer*/) {
+        std::array<float, 8> w{};
+        std::array<float, 8> s{};
+        for (const Row& row : rows) {
+          corners.weights(row.place, row.isovalue, w, s);
+          for (unsigned q = 0; q < 8; ++q) {
+            sum[corners.texel[q]] += double(w[q]) * double(light[row.sample]);
+            total[corners.texel[q]] += double(w[q]);
+          }
+        }
+      });
   coverage.resize(texels_->size());
   for (std::size_t t = 0; t < sum.size(); ++t) {
     coverage[t] = float(total[t]);
@@ -123,22 +168,33 @@ FitVector FitSystem::prior(std::span<const float> light, std::vector<float>& cov
   return x;
 }
 
-FitVector FitSystem::residual_gradient(std::span<const float> light, const FitVector& x) const {
-  FitVector y = zero();
+FitRest FitSystem::rest(std::span<const float> light, const FitVector& prior, const FitVector& x,
+                        const FitDamping& damping, const ValueRange& bounds) const {
+  FitRest rest{.gradient = zero(), .weights = std::vector<float>(rows_.size(), 0.0f)};
+  FitVector& y = rest.gradient;
+  for (std::size_t t = 0; t < x.values.size(); ++t)
+    y.values[t] = -float(damping.value) * texel_weights_[t] * x.values[t];
+  for (std::size_t t = 0; t < x.slopes.size(); ++t)
+    y.slopes[t] = -float(damping.slope) * texel_weights_[t] * x.slopes[t];
   std::vector<Terms> layers(std::size_t(texels_->cells().z), Terms{});
   const bool sloped = slope_terms_ == SlopeTerms::kByIsovalue;
-  for_each_cell([&](const FitCorners& corners, std::span<const Row> rows, std::size_t layer) {
+  for_each_cell([&](const FitCorners& corners, std::span<const Row> rows, std::size_t first, std::size_t layer) {
     std::array<float, 8> w{};
     std::array<float, 8> s{};
-    for (const Row& row : rows) {
+    for (std::size_t r = 0; r < rows.size(); ++r) {
+      const Row& row = rows[r];
       corners.weights(row.place, row.isovalue, w, s);
       double read = 0.0;
       for (unsigned q = 0; q < 8; ++q) {
-        read += double(w[q]) * double(x.values[corners.texel[q]]);
-        if (sloped) read += double(s[q]) * double(x.slopes[corners.texel[q]]);
+        const std::uint32_t t = corners.texel[q];
+        read += double(w[q]) * (double(prior.values[t]) + double(x.values[t]));
+        if (sloped) read += double(s[q]) * double(x.slopes[t]);
       }
       for (std::size_t t = 0; t < kTerms; ++t) read += double(row.openness[t]) * x.terms[t];
-      const auto left = float(double(light[row.sample]) - read);
+      const bool follows = read > double(bounds.low) && read < double(bounds.high);
+      rest.weights[first + r] = follows ? row.weight : kClampedPart * row.weight;
+      const auto left =
+          row.weight * float(double(light[row.sample]) - std::clamp(read, double(bounds.low), double(bounds.high)));
       for (unsigned q = 0; q < 8; ++q) {
         y.values[corners.texel[q]] += w[q] * left;
         if (sloped) y.slopes[corners.texel[q]] += s[q] * left;
@@ -147,13 +203,16 @@ FitVector FitSystem::residual_gradient(std::span<const float> light, const FitVe
     }
   });
   y.terms = sum_layers(layers);
-  return y;
+  return rest;
 }
 
-FitVector FitSystem::normal_product(const FitVector& x, const FitDamping& damping) const {
+FitVector FitSystem::normal_product(const FitVector& x, const FitDamping& damping,
+                                    std::span<const float> weights) const {
   FitVector y = zero();
-  for (std::size_t t = 0; t < x.values.size(); ++t) y.values[t] = float(damping.value) * x.values[t];
-  for (std::size_t t = 0; t < x.slopes.size(); ++t) y.slopes[t] = float(damping.slope) * x.slopes[t];
+  for (std::size_t t = 0; t < x.values.size(); ++t)
+    y.values[t] = float(damping.value) * texel_weights_[t] * x.values[t];
+  for (std::size_t t = 0; t < x.slopes.size(); ++t)
+    y.slopes[t] = float(damping.slope) * texel_weights_[t] * x.slopes[t];
   std::vector<Terms> layers(std::size_t(texels_->cells().z), Terms{});
   const bool sloped = slope_terms_ == SlopeTerms::kByIsovalue;
   const std::array<float, kTerms> terms = [&] {
@@ -161,7 +220,7 @@ FitVector FitSystem::normal_product(const FitVector& x, const FitDamping& dampin
     for (std::size_t t = 0; t < kTerms; ++t) result[t] = float(x.terms[t]);
     return result;
   }();
-  for_each_cell([&](const FitCorners& corners, std::span<const Row> rows, std::size_t layer) {
+  for_each_cell([&](const FitCorners& corners, std::span<const Row> rows, std::size_t first, std::size_t layer) {
     std::array<float, 8> w{};
     std::array<float, 8> s{};
     std::array<float, 8> values{};
@@ -173,14 +232,16 @@ FitVector FitSystem::normal_product(const FitVector& x, const FitDamping& dampin
       values[q] = x.values[corners.texel[q]];
       slopes[q] = sloped ? x.slopes[corners.texel[q]] : 0.0f;
     }
-    for (const Row& row : rows) {
+    for (std::size_t r = 0; r < rows.size(); ++r) {
+      const Row& row = rows[r];
+      const float weight = weights[first + r];
       corners.weights(row.place, row.isovalue, w, s);
       // Four sums side by side, which fit a vector.
       std::array<float, 4> parts{};
       for (unsigned q = 0; q < 4; ++q)
         parts[q] = (w[q] * values[q] + s[q] * slopes[q]) + (w[q + 4] * values[q + 4] + s[q + 4] * slopes[q + 4]) +
                    row.openness[q] * terms[q];
-      const float read = (parts[0] + parts[1]) + (parts[2] + parts[3]);
+      const float read = weight * ((parts[0] + parts[1]) + (parts[2] + parts[3]));
       for (unsigned q = 0; q < 8; ++q) {
         value_sums[q] += w[q] * read;
         slope_sums[q] += s[q] * read;
@@ -197,21 +258,25 @@ FitVector FitSystem::normal_product(const FitVector& x, const FitDamping& dampin
   return y;
 }
 
-FitVector FitSystem::diagonal(const FitDamping& damping) const {
+FitVector FitSystem::diagonal(const FitDamping& damping, std::span<const float> weights) const {
   FitVector d = zero();
-  std::fill(d.values.begin(), d.values.end(), float(damping.value));
-  std::fill(d.slopes.begin(), d.slopes.end(), float(damping.slope));
+  for (std::size_t t = 0; t < d.values.size(); ++t) d.values[t] = float(damping.value) * texel_weights_[t];
+  for (std::size_t t = 0; t < d.slopes.size(); ++t) d.slopes[t] = float(damping.slope) * texel_weights_[t];
   std::vector<Terms> layers(std::size_t(texels_->cells().z), Terms{});
-  for_each_cell([&](const FitCorners& corners, std::span<const Row> rows, std::size_t layer) {
+  for_each_cell([&](const FitCorners& corners, std::span<const Row> rows, std::size_t first, std::size_t layer) {
     std::array<float, 8> w{};
     std::array<float, 8> s{};
-    for (const Row& row : rows) {
+    for (std::size_t r = 0; r < rows.size(); ++r) {
+      const Row& row = rows[r];
+      const float weight = weights[first + r];
       corners.weights(row.place, row.isovalue, w, s);
       for (unsigned q = 0; q < 8; ++q) {
-        d.values[corners.texel[q]] += w[q] * w[q];
-        if (!d.slopes.empty()) d.slopes[corners.texel[q]] += s[q] * s[q];
+        d.values[corners.texel[q]] += weight * w[q] * w[q];
+        if (!d.slopes.empty()) d.slopes[corners.texel[q]] += weight * s[q] * s[q];
       }
-      for (std::size_t t = 0; t < kTerms; ++t) layers[layer][t] += double(row.openness[t]) * double(row.openness[t]);
+      for (std::size_t t = 0; t < kTerms; ++t) {
+        layers[layer][t] += double(weight) * double(row.openness[t]) * double(row.openness[t]);
+      }
     }
   });
   d.terms = sum_layers(layers);

@@ -31,11 +31,19 @@ struct FitDamping {
   double slope = 0.0;
 };
 
+/// What a fit leaves, seen from where it stands.
+struct FitRest {
+  FitVector gradient;          ///< A^T W (light - reading) less what damping pulls back
+  std::vector<float> weights;  ///< W of each row, small where the reading is clamped and does not follow the unknowns
+};
+
 enum class NearFieldUse { kNone, kFitted };
 
-/// The linear least squares problem of texels that, read as LightReader does, give the samples: A is the reading, one
-/// row a sample. Rows are kept by cell of the texel lattice and A is never formed. Products are summed in a fixed
-/// order: cells of one layer after another, even layers before odd ones, which write apart.
+/// The least squares problem of texels that, read as LightReader does, give the samples: A is the reading but for its
+/// clamping, one row a sample. Rows weigh as the root of the field's steepness, so that level sets count by their area
+/// where they lie dense, if less than by all of it; damping weighs as a texel's own rows.
+/// Rows are kept by cell of the texel lattice and A is never formed. Products are summed in a fixed order: cells of one
+/// layer after another, even layers before odd ones, which write apart.
 class FitSystem {
  public:
   FitSystem(const Volume& volume, const SampleSet& samples, const Lattice& texels, SlopeTerms slopes,
@@ -45,12 +53,14 @@ class FitSystem {
   /// Mean light of the samples around each texel, weighted as the reading does; the result's slopes are 0. Where
   /// `coverage` is 0, no sample is.
   [[nodiscard]] FitVector prior(std::span<const float> light, std::vector<float>& coverage) const;
-  /// A^T r of the residual r = light - A x.
-  [[nodiscard]] FitVector residual_gradient(std::span<const float> light, const FitVector& x) const;
-  /// (A^T A + damping) x.
-  [[nodiscard]] FitVector normal_product(const FitVector& x, const FitDamping& damping) const;
-  /// The diagonal of A^T A + damping.
-  [[nodiscard]] FitVector diagonal(const FitDamping& damping) const;
+  /// What prior + x leaves of the samples, read as light within `bounds`.
+  [[nodiscard]] FitRest rest(std::span<const float> light, const FitVector& prior, const FitVector& x,
+                             const FitDamping& damping, const ValueRange& bounds) const;
+  /// (A^T W A + damping) x.
+  [[nodiscard]] FitVector normal_product(const FitVector& x, const FitDamping& damping,
+                                         std::span<const float> weights) const;
+  /// The diagonal of A^T W A + damping.
+  [[nodiscard]] FitVector diagonal(const FitDamping& damping, std::span<const float> weights) const;
 
   [[nodiscard]] const FitTexels& texels() const { return *texels_; }
   /// Mean openness over the samples.
@@ -62,12 +72,16 @@ class FitSystem {
     std::array<float, 3> place;  ///< in the cell of texels, 0 to 1
     float isovalue;
     std::array<float, kNearFieldSteps.size()> openness;  ///< less the mean
+    float weight;
     std::uint32_t sample;
   };
 
   void sort_rows(const Volume& volume, const SampleSet& samples, const Lattice& texels, const Run& run);
-  void measure_near_field(const Volume& volume, const SampleSet& samples, const Run& run);
-  /// Calls visit(corners, rows, layer) for every cell with rows.
+  /// Weights of the rows, their openness where it is fitted, and the texels' own weights.
+  void measure(const Volume& volume, const SampleSet& samples, const Run& run);
+  void centre_rows(const std::array<double, kNearFieldSteps.size() + 1>& sums);
+  void weigh_texels();
+  /// Calls visit(corners, rows, first row's number, layer) for every cell with rows.
   template <class Visit>
   void for_each_cell(const Visit& visit) const;
   /// Adds per-layer sums of the near-field terms in order.
@@ -80,6 +94,7 @@ class FitSystem {
   std::vector<std::uint32_t> starts_;  ///< of each cell's rows, and the end
   std::vector<Row> rows_;
   std::optional<FitTexels> texels_;
+  std::vector<float> texel_weights_;  ///< mean weight of each texel's rows, weighted as the reading does
   std::array<double, kNearFieldSteps.size()> mean_openness_{};
   std::array<double, kNearFieldSteps.size()> steps_ = kNearFieldSteps;
 };
