@@ -229,7 +229,8 @@ Solution LightLinks::solve(const Scene& scene, const SolveSettings& settings, co
   const bool some = settings.bounces == kAllBounces && settings.one_of > 1 && !rounds_->targets->are_sites();
   std::vector<std::uint32_t> places;
   if (some) places = Solver::places_of_some(sites_.size(), settings.one_of);
-  Solver solver(*this, scene, straight(parts.soft(), lamps, places, run), std::move(places), to_grid, run);
+  SampleSet first = straight(parts.soft(), lamps, places, run);
+  Solver solver(*this, scene, std::move(first), std::move(places), to_grid, run);
   reflect_last(parts, lamps, solver.before_last(settings, start, solution), settings, solution, run);
   return solution;
 }

@@ -48,8 +48,8 @@ class KeptRays {
   BakeResult begun_;  ///< what the construction found
   std::unique_ptr<LightLinks> links_;
   std::optional<TexelMeans> means_;  ///< what scattered sites' light is read from between reflections, once it is
-  std::size_t one_of_ = 1;       ///< SolveSettings
-  std::size_t ends_one_of_ = 1;  ///< SolveSettings
+  std::size_t one_of_ = 1;           ///< SolveSettings
+  std::size_t ends_one_of_ = 1;      ///< SolveSettings
   double trace_seconds_ = 0.0;
   std::vector<float> last_;  ///< e of the last solution
 };
