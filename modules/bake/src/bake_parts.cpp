@@ -53,6 +53,7 @@ SiteRequest site_request(const BakeSettings& settings, const Lattice& texels, Ou
 
 int kept_rays_a_site(const BakeSettings& settings, std::size_t sites, int rays) {
   constexpr int kFewest = 4;
+  if (settings.trace.bounces == 0) return rays;  // a bit each, no links
   const std::uint64_t room = most_kept_rays(settings) / std::max<std::uint64_t>(sites, 1);
   if (std::uint64_t(rays) <= room) return rays;
   const int kept = int(std::bit_floor(room));

@@ -23,7 +23,7 @@ inline constexpr int kFirstRays = 16;
 /// Of all sites; a link takes four bytes.
 [[nodiscard]] inline std::uint64_t most_kept_rays(const BakeSettings& settings) { return settings.most_link_bytes / 4; }
 /// Of `rays` rays of each site, how many are kept for BounceMethod::kIterated: all, or as large a power of two as
-/// memory allows; 0 if that is too few to iterate over.
+/// memory allows; 0 if that is too few to iterate over. Without bounces all: they have no links.
 [[nodiscard]] int kept_rays_a_site(const BakeSettings& settings, std::size_t sites, int rays);
 
 /// \throw InvalidInput if the volume is not usable or constant, or the isovalues asked for lie outside its values

@@ -1,3 +1,4 @@
+#include <fmt/format.h>
 #include <isolux/bake/kept_rays.h>
 #include <isolux/core/error.h>
 #include <isolux/core/stopwatch.h>
@@ -40,6 +41,9 @@ KeptRays::KeptRays(const Volume& volume, const Scene& scene, const BakeSettings&
   const Stopwatch watch;
   const int rays = has_target(settings_) ? kFirstRays : settings_.trace.rays;
   const int kept = has_target(settings_) ? rays : kept_rays_a_site(settings_, found.sites.size(), rays);
+  if (kept == 0)
+    throw InvalidInput(fmt::format("{} sites: even four rays of each take more than the {} bytes that kept rays may",
+                                   found.sites.size(), settings_.most_link_bytes));
   if (kept < rays)
     begun_.skipped["links_beyond_memory"] = std::uint64_t(found.sites.size()) * std::uint64_t(rays - kept);
   const LinkSettings request{.rays = rays,

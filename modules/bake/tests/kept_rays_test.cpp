@@ -1,6 +1,7 @@
 // Rays spent until an error is reached, whether that error is the true one, and light changed without rays.
 #include <gtest/gtest.h>
 #include <isolux/bake.h>
+#include <isolux/core/error.h>
 #include <isolux/core/stopwatch.h>
 #include <isolux/volume_io/read.h>
 
@@ -181,6 +182,15 @@ TEST(KeptRays, EndWhereMemoryDoes) {
     squares += std::pow(double(all.light.values[i]) - double(some.light.values[i]), 2.0);
   // What 16 rays are noisier by, seen through the ends of 64: .3 / sqrt(16) / sqrt(64), less for their nets.
   EXPECT_LT(std::sqrt(squares / double(all.light.values.size())), 0.01);
+  // Without reflections nothing is linked, and where hardly any link fits a set of kept rays is refused.
+  settings.most_link_bytes = 4 * kSites * 3;
+  settings.bounce_method = BounceMethod::kIterated;
+  EXPECT_THROW(KeptRays(volume, half_sky(), settings, builtin_stages(), isolux::Run{}), InvalidInput);
+  settings.trace.bounces = 0;
+  const BakeResult none = bake(volume, half_sky(), settings, builtin_stages(), isolux::Run{});
+  EXPECT_FALSE(none.skipped.contains("links_beyond_memory"));
+  EXPECT_EQ(none.most_rays, 64u);
+  settings = {};
   // Towards an error rays cannot be doubled then, but they can still be counted out beforehand.
   settings.most_link_bytes = 4 * kSites * 15;
   settings.target_rmse = 0.02;

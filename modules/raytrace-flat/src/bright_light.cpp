@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <glm/geometric.hpp>
 #include <numbers>
+#include <span>
 #include <vector>
 
 #include "environment.h"
@@ -90,11 +91,10 @@ class BrightBlock {
 
 }  // namespace
 
-TraceCounters add_bright_light(const Volume& volume, OuterSide outer, const ImageEnvironment& bright,
+TraceCounters add_bright_light(const Volume& volume, OuterSide outer, const Environment& bright,
                                const TraceSettings& settings, const Run& run, SampleSet& samples) {
-  const Environment environment = bright;
   const auto rays = std::size_t(settings.rays);
-  const BrightBlock of_block(volume, environment, rays, run.seed);
+  const BrightBlock of_block(volume, bright, rays, run.seed);
   return wide::trace_blocks(
       volume, samples.sites, outer, rays, run,
       [&](const wide::SiteBlock& block, TraceCounters& counters) { of_block.light(block, samples, counters); });

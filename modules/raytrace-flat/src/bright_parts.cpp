@@ -57,12 +57,13 @@ SceneParts::SceneParts(const Scene& scene) : whole_(scene) {
   if (std::isinf(most)) return;
   const auto& image = std::get<ImageEnvironment>(scene.environment);
   ImageEnvironment soft = image;
-  bright_ = image;
+  ImageEnvironment bright = image;
   for (std::size_t i = 0; i < image.pixels.size(); ++i) {
     const double here = luminance(image.pixels[i]);
     if (here > most) soft.pixels[i] *= float(most / here);
-    bright_->pixels[i] -= soft.pixels[i];
+    bright.pixels[i] -= soft.pixels[i];
   }
+  bright_ = std::move(bright);
   soft_ = under(std::move(soft), scene);
 }
 

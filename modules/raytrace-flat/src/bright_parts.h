@@ -17,12 +17,12 @@ class SceneParts {
   /// Under the part for rays by chance.
   [[nodiscard]] const Scene& soft() const { return soft_ ? *soft_ : whole_; }
   /// The part to aim at; null where there is none.
-  [[nodiscard]] const ImageEnvironment* bright() const { return bright_ ? &*bright_ : nullptr; }
+  [[nodiscard]] const Environment* bright() const { return bright_ ? &*bright_ : nullptr; }
 
  private:
   const Scene& whole_;
   std::optional<Scene> soft_;
-  std::optional<ImageEnvironment> bright_;
+  std::optional<Environment> bright_;
 };
 
 /// What the scene's light sources alone shine.

@@ -150,9 +150,10 @@ TEST(Environment, OnlyWhatIsMuchBrighterIsPartedFromAnImage) {
   const SceneParts parts(scene);
   ASSERT_NE(parts.bright(), nullptr);
   const auto& soft = std::get<ImageEnvironment>(parts.soft().environment);
+  const auto& bright = std::get<ImageEnvironment>(*parts.bright());
   for (std::size_t i = 0; i < image.pixels.size(); ++i) {
-    EXPECT_EQ(parts.bright()->pixels[i] == Vec3f(0.0f), i != 12) << i;
-    const Vec3f sum = soft.pixels[i] + parts.bright()->pixels[i];
+    EXPECT_EQ(bright.pixels[i] == Vec3f(0.0f), i != 12) << i;
+    const Vec3f sum = soft.pixels[i] + bright.pixels[i];
     for (int c = 0; c < 3; ++c) EXPECT_FLOAT_EQ(sum[c], image.pixels[i][c]) << i;
   }
 }

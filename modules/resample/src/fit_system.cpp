@@ -89,23 +89,8 @@ void FitSystem::centre_rows(const std::array<double, kTerms + 1>& sums) {
 }
 
 void FitSystem::weigh_texels() {
-  std::vector<float> coverage(texels_->size(), 0.0f);
-  texel_weights_.assign(texels_->size(), 0.0f);
-  for_each_cell(
-      [&](const FitCorners& corners, std::span<const Row> rows, std::size_t /*first*/, std::size_t /*layer*/) {
-        std::array<float, 8> w{};
-        std::array<float, 8> s{};
-        for (const Row& row : rows) {
-          corners.weights(row.place, row.isovalue, w, s);
-          for (unsigned q = 0; q < 8; ++q) {
-            coverage[corners.texel[q]] += w[q];
-            texel_weights_[corners.texel[q]] += w[q] * row.weight;
-          }
-        }
-      });
-  for (std::size_t t = 0; t < coverage.size(); ++t) {
-    if (coverage[t] > 0.0f) texel_weights_[t] /= coverage[t];
-  }
+  std::vector<float> coverage;
+  texel_weights_ = texel_means([](const Row& row) { return row.weight; }, coverage);
 }
 
 Terms FitSystem::sum_layers(const std::vector<Terms>& layers) const {
@@ -144,8 +129,9 @@ FitVector FitSystem::zero() const {
   return x;
 }
 
-FitVector FitSystem::prior(std::span<const float> light, std::vector<float>& coverage) const {
-  FitVector x = zero();
+template <class Value>
+std::vector<float> FitSystem::texel_means(const Value& value, std::vector<float>& coverage) const {
+  std::vector<float> means(texels_->size(), 0.0f);
   std::vector<double> sum(texels_->size(), 0.0);
   std::vector<double> total(texels_->size(), 0.0);
   for_each_cell(
@@ -155,7 +141,7 @@ FitVector FitSystem::prior(std::span<const float> light, std::vector<float>& cov
         for (const Row& row : rows) {
           corners.weights(row.place, row.isovalue, w, s);
           for (unsigned q = 0; q < 8; ++q) {
-            sum[corners.texel[q]] += double(w[q]) * double(light[row.sample]);
+            sum[corners.texel[q]] += double(w[q]) * double(value(row));
             total[corners.texel[q]] += double(w[q]);
           }
         }
@@ -163,8 +149,14 @@ FitVector FitSystem::prior(std::span<const float> light, std::vector<float>& cov
   coverage.resize(texels_->size());
   for (std::size_t t = 0; t < sum.size(); ++t) {
     coverage[t] = float(total[t]);
-    if (total[t] > 0.0) x.values[t] = float(sum[t] / total[t]);
+    if (total[t] > 0.0) means[t] = float(sum[t] / total[t]);
   }
+  return means;
+}
+
+FitVector FitSystem::prior(std::span<const float> light, std::vector<float>& coverage) const {
+  FitVector x = zero();
+  x.values = texel_means([light](const Row& row) { return light[row.sample]; }, coverage);
   return x;
 }
 

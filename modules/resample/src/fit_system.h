@@ -84,6 +84,9 @@ class FitSystem {
   /// Calls visit(corners, rows, first row's number, layer) for every cell with rows.
   template <class Visit>
   void for_each_cell(const Visit& visit) const;
+  /// Means of value(row) over the rows around each texel, by the weights with which they read it; their sums.
+  template <class Value>
+  [[nodiscard]] std::vector<float> texel_means(const Value& value, std::vector<float>& coverage) const;
   /// Adds per-layer sums of the near-field terms in order.
   [[nodiscard]] std::array<double, kNearFieldSteps.size()> sum_layers(
       const std::vector<std::array<double, kNearFieldSteps.size()>>& layers) const;
