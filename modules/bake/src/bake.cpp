@@ -11,6 +11,7 @@
 #include <limits>
 #include <utility>
 
+#include "bake_in_parts.h"
 #include "bake_parts.h"
 #include "both_sides.h"
 #include "light_by_need.h"
@@ -31,11 +32,11 @@ BakeResult bake_paths(const Volume& volume, const Scene& scene, const BakeSettin
   const Stopwatch watch;
   TraceSettings trace = settings.trace;
   trace.nets = RayNets::kInterleaved;
-  const TraceResult traced = tracer->trace(volume, scene, std::move(found.sites), trace, run);
+  TraceResult traced = tracer->trace(volume, scene, std::move(found.sites), trace, run);
   result.seconds["trace"] = watch.seconds();
   result.counters = traced.counters;
   result.least_rays = result.most_rays = std::uint32_t(settings.trace.rays);
-  finish_bake(volume, traced.samples, *resampler, texels, settings, run, result);
+  finish_bake(volume, std::move(traced.samples), *resampler, texels, settings, run, result);
   return result;
 }
 
@@ -52,6 +53,11 @@ bool keeps_rays(const BakeSettings& settings, const Scene& scene, std::size_t si
   if (settings.bounce_method == BounceMethod::kIterated)
     return !has_target(settings) || (!has_lamps(scene) && kept_rays_a_site(settings, sites, kFirstRays) == kFirstRays);
   return has_target(settings) && settings.trace.bounces == 0 && settings.tracer.name == "wide" && !has_lamps(scene);
+}
+
+/// Whether no sites have to be found beforehand.
+bool in_parts(const Volume& volume, const Scene& scene, const BakeSettings& settings, const Stages& stages) {
+  return can_bake_in_parts(volume, settings, stages) && !keeps_rays(settings, scene, 0);
 }
 
 BakeResult bake_side(const Volume& volume, const Scene& scene, const BakeSettings& settings, FoundSites found,
@@ -91,7 +97,12 @@ BakeResult bake_side(const Volume& volume, const Scene& scene, const BakeSetting
   }
   if (keeps_rays(settings, scene, found.sites.size()))
     return KeptRays(volume, scene, settings, std::move(found), stages, run).light(scene, run);
-  if (!has_target(settings)) return bake_paths(volume, scene, settings, std::move(found), stages, run);
+  if (!has_target(settings)) {
+    if (!can_bake_in_parts(volume, settings, stages))
+      return bake_paths(volume, scene, settings, std::move(found), stages, run);
+    found.sites = {};
+    return bake_in_parts(volume, scene, settings, std::move(found.begun), stages, run);
+  }
   double pilot_seconds = 0.0;
   const BakeSettings chosen = with_rays_for_target(volume, scene, settings, found, stages, run, pilot_seconds);
   BakeResult result = bake_side(volume, scene, chosen, std::move(found), stages, run);
@@ -146,8 +157,10 @@ BakeResult bake(const Volume& volume, const Scene& scene, const BakeSettings& gi
                 const Run& run) {
   BakeSettings settings = with_defaults(given, stages);
   const Stopwatch watch;
-  FoundSites found;  // by need they are found when they are wanted
-  if (settings.texel_sites == TexelSites::kAll) found = find_sites(volume, scene.outer, settings, stages, run);
+  require_lightable(volume, settings);
+  FoundSites found;  // by need and in parts they are found when they are wanted
+  if (settings.texel_sites == TexelSites::kAll && !in_parts(volume, scene, settings, stages))
+    found = find_sites(volume, scene.outer, settings, stages, run);
   if (settings.target_seconds > 0.0)
     settings.target_seconds = std::max(settings.target_seconds - watch.seconds(), kLeastSeconds);
   const auto light = scene.sides == LitSides::kBoth ? bake_both : bake_side;

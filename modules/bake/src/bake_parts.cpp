@@ -14,21 +14,6 @@
 #include "standard_error.h"
 
 namespace isolux {
-namespace {
-
-/// Standard errors on the texels, brought there as light is.
-IlluminationGrid error_grid(const Volume& volume, const SampleSet& samples, const Resampler& resampler,
-                            const Lattice& texels, const Run& run) {
-  SampleSet errors;
-  errors.sites = samples.sites;
-  errors.variance = samples.variance;
-  errors.radiance.reserve(samples.size());
-  for (const float variance : samples.variance) errors.radiance.push_back(std::sqrt(variance));
-  return fill_unlit(resampler.resample(volume, errors, texels, run), run);
-}
-
-}  // namespace
-
 void require_lightable(const Volume& volume, const BakeSettings& settings) {
   require_usable(volume);
   const std::optional<ValueRange>& wanted = settings.isovalues;
@@ -60,16 +45,29 @@ int kept_rays_a_site(const BakeSettings& settings, std::size_t sites, int rays) 
   return kept < kFewest ? 0 : kept;
 }
 
-void finish_bake(const Volume& volume, const SampleSet& samples, const Resampler& resampler, const Lattice& texels,
-                 const BakeSettings& settings, const Run& run, BakeResult& result) {
-  result.rmse_estimate = standard_error(samples.variance);
-  const Stopwatch watch;
-  ResampledGrid partial = resampler.resample(volume, samples, texels, run);
+SampleSet standard_errors(SampleSet samples) {
+  samples.channels = 1;
+  samples.radiance.resize(samples.size());
+  std::transform(samples.variance.begin(), samples.variance.end(), samples.radiance.begin(),
+                 [](float variance) { return std::sqrt(variance); });
+  return samples;
+}
+
+void finish_light(const Volume& volume, const SampleSet& samples, ResampledGrid partial, const Resampler& resampler,
+                  const BakeSettings& settings, const Run& run, BakeResult& result) {
   resampler.add_detail(volume, samples, partial, run);
   result.unlit_texels = std::size_t(std::count(partial.lit.begin(), partial.lit.end(), std::uint8_t(0)));
   result.light = fill_unlit(std::move(partial), run, fill_for(settings));
   result.light.detail.isovalues = settings.isovalues;
-  if (settings.wants_error_grid) result.error = error_grid(volume, samples, resampler, texels, run);
+}
+
+void finish_bake(const Volume& volume, SampleSet samples, const Resampler& resampler, const Lattice& texels,
+                 const BakeSettings& settings, const Run& run, BakeResult& result) {
+  result.rmse_estimate = standard_error(samples.variance);
+  const Stopwatch watch;
+  finish_light(volume, samples, resampler.resample(volume, samples, texels, run), resampler, settings, run, result);
+  if (settings.wants_error_grid)
+    result.error = fill_unlit(resampler.resample(volume, standard_errors(std::move(samples)), texels, run), run);
   result.seconds["resample"] = watch.seconds();
 }
 

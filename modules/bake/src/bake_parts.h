@@ -32,8 +32,15 @@ void require_lightable(const Volume& volume, const BakeSettings& settings);
 /// What a sampler is asked for, but for the number of sites a texel.
 [[nodiscard]] SiteRequest site_request(const BakeSettings& settings, const Lattice& texels, OuterSide outer);
 
+/// Samples of their standard error instead of light.
+[[nodiscard]] SampleSet standard_errors(SampleSet samples);
+
+/// A grid that `resampler` made of these samples, and perhaps of others like them, as the light of the bake.
+void finish_light(const Volume& volume, const SampleSet& samples, ResampledGrid partial, const Resampler& resampler,
+                  const BakeSettings& settings, const Run& run, BakeResult& result);
+
 /// The samples as a grid, with their error.
-void finish_bake(const Volume& volume, const SampleSet& samples, const Resampler& resampler, const Lattice& texels,
+void finish_bake(const Volume& volume, SampleSet samples, const Resampler& resampler, const Lattice& texels,
                  const BakeSettings& settings, const Run& run, BakeResult& result);
 
 }  // namespace isolux

@@ -131,7 +131,7 @@ BakeResult KeptRays::light(const Scene& scene, const Run& run) {
   const bool missed = settings_.target_rmse > 0.0 && standard_error(solution.samples.variance) > settings_.target_rmse;
   if (settings_.trace.bounces != 0 && missed && !(settings_.target_seconds > 0.0))
     result.skipped["rounds_beyond_memory"] = 1;
-  finish_bake(volume_, solution.samples, *resampler_, texels_, settings_, run, result);
+  finish_bake(volume_, std::move(solution.samples), *resampler_, texels_, settings_, run, result);
   return result;
 }
 

@@ -16,6 +16,16 @@ void throw_if_stopped(const Run& run) {
   if (run.stop.stop_requested()) throw Cancelled("interrupted");
 }
 
+Run part_of(const Run& run, double begin, double end) {
+  Run part = run;
+  if (run.progress) {
+    part.progress = [&run, begin, end](std::string_view stage, double fraction) {
+      run.progress(stage, begin + fraction * (end - begin));
+    };
+  }
+  return part;
+}
+
 std::size_t block_count(std::size_t count, std::size_t block_size) { return (count + block_size - 1) / block_size; }
 
 int thread_count(const Run& run) { return run.threads > 0 ? run.threads : tbb::info::default_concurrency(); }

@@ -3,14 +3,32 @@
 #include <isolux/core/volume.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstddef>
 
 namespace isolux {
 
 ValueRange value_range(const Volume& volume) {
+  // Columns of their own, which a vector takes at once.
+  constexpr std::size_t kColumns = 32;
   const auto values = volume.values.values();
-  const auto [low, high] = std::minmax_element(values.begin(), values.end());
-  return {*low, *high};
+  std::array<float, kColumns> low{};
+  std::array<float, kColumns> high{};
+  low.fill(values.front());
+  high.fill(values.front());
+  std::size_t i = 0;
+  for (; i + kColumns <= values.size(); i += kColumns) {
+    for (std::size_t c = 0; c < kColumns; ++c) {
+      low[c] = std::min(low[c], values[i + c]);
+      high[c] = std::max(high[c], values[i + c]);
+    }
+  }
+  for (; i < values.size(); ++i) {
+    low[0] = std::min(low[0], values[i]);
+    high[0] = std::max(high[0], values[i]);
+  }
+  return {*std::min_element(low.begin(), low.end()), *std::max_element(high.begin(), high.end())};
 }
 
 void require_usable(const Volume& volume) {

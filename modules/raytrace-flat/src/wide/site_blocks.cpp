@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -38,12 +39,28 @@ std::uint64_t morton(const Vec3f& position) {
 /// Isovalues with the sign that makes the inner side the higher one.
 float signed_isovalue(float isovalue, OuterSide outer) { return outer == OuterSide::kLower ? isovalue : -isovalue; }
 
+/// The part of the volume whose values lie between the sites' least and largest isovalue.
+double share_of_values(const Volume& volume, const Sites& sites) {
+  constexpr std::size_t kSample = 65536;
+  const auto [low, high] = std::minmax_element(sites.isovalues.begin(), sites.isovalues.end());
+  const std::span<const float> values = volume.values.values();
+  // An odd step meets all columns of a volume whose rows are a power of two.
+  const std::size_t step = std::max<std::size_t>(1, values.size() / kSample) | 1;
+  std::size_t within = 0;
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < values.size(); i += step, ++count)
+    within += std::size_t(values[i] >= *low && values[i] <= *high);
+  return double(within) / double(count);
+}
+
 /// How many buckets pay. A ray costs the more the wider its bucket, by some 3500 ns for all isovalues in one, and a
-/// bucket's occupancy some 40 ns a brick: with b buckets, rays * 3500 / b + bricks * 40 * b is least at this root.
-std::size_t bucket_count(const Volume& volume, std::size_t sites, const BlockRequest& request) {
+/// bucket's occupancy some 40 ns a brick: with b buckets for a share s of all values, rays * 3500 * s / b + bricks * 40
+/// * b is least at this root.
+std::size_t bucket_count(const Volume& volume, const Sites& sites, const BlockRequest& request) {
   constexpr double kWideOverBrick = 90.0;
   const double bricks = double(volume.lattice().count()) / 64.0;
-  const double pays = std::sqrt(kWideOverBrick * double(sites) * double(request.rays_per_site) / bricks);
+  const double rays = double(sites.size()) * double(request.rays_per_site);
+  const double pays = std::sqrt(kWideOverBrick * share_of_values(volume, sites) * rays / bricks);
   return std::size_t(std::clamp(pays, 1.0, double(CellCodes::kMaxThresholds)));
 }
 
@@ -75,7 +92,7 @@ struct BucketLevels {
   std::vector<float> ceilings;    ///< higher than that by more than a rounding
 
   BucketLevels(const Volume& volume, const Sites& sites, const BlockRequest& request)
-      : least(choose_thresholds(sites, request.outer, bucket_count(volume, sites.size(), request))) {
+      : least(choose_thresholds(sites, request.outer, bucket_count(volume, sites, request))) {
     // Positions found by tracing are off their level set by a rounding, which must not cost them their bucket; and
     // whether a value is beyond an isovalue is to be no matter of rounding.
     const ValueRange range = value_range(volume);
@@ -127,17 +144,6 @@ std::vector<Bucket> collect(const Sites& sites, OuterSide outer, const std::vect
   return buckets;
 }
 
-/// A run whose progress is that of a part of a longer one.
-Run part_of(const Run& run, std::size_t done, std::size_t part, std::size_t all) {
-  Run inner = run;
-  if (run.progress) {
-    inner.progress = [&run, done, part, all](std::string_view stage, double fraction) {
-      run.progress(stage, (double(done) + fraction * double(part)) / double(all));
-    };
-  }
-  return inner;
-}
-
 }  // namespace
 
 void for_each_block(const Volume& volume, const Sites& sites, const BlockRequest& request, const Run& run,
@@ -162,7 +168,8 @@ void for_each_block(const Volume& volume, const Sites& sites, const BlockRequest
       const std::size_t bucket = first + b;
       occupancy.build(codes, int(bucket), run);
       inner.build(inner_codes, int(bucket), run);
-      const Run part = part_of(run, done, entries.size(), sites.size());
+      const auto all = double(sites.size());
+      const Run part = part_of(run, double(done) / all, double(done + entries.size()) / all);
       parallel_blocks(entries.size(), request.sites_per_block, part, stage, [&](const Block& block) {
         std::vector<std::uint32_t> numbers;
         for (std::size_t i = block.begin; i < block.end; ++i) numbers.push_back(entries[i].site);

@@ -45,8 +45,16 @@ class Direct final : public Resampler {
   ResampledGrid resample(const Volume& volume, const SampleSet& samples, const Lattice& texels,
                          const Run& run) const override {
     require_samples(samples);
-    return options_.denoise ? place(volume, denoised(volume, samples, run), texels, run)
-                            : place(volume, samples, texels, run);
+    ResampledGrid result = unlit_grid(texels, samples.channels);
+    place(volume, options_.denoise ? denoised(volume, samples, run) : samples, result, run);
+    return result;
+  }
+
+  [[nodiscard]] bool takes_parts() const override { return !options_.denoise; }
+
+  void add_part(const Volume& volume, const SampleSet& samples, ResampledGrid& texels, const Run& run) const override {
+    require_samples(samples);
+    place(volume, samples, texels, run);
   }
 
   void add_detail(const Volume& volume, const SampleSet& samples, ResampledGrid& texels,
@@ -56,12 +64,10 @@ class Direct final : public Resampler {
   }
 
  private:
-  [[nodiscard]] static ResampledGrid place(const Volume& volume, const SampleSet& samples, const Lattice& texels,
-                                           const Run& run) {
+  static void place(const Volume& volume, const SampleSet& samples, ResampledGrid& result, const Run& run) {
+    const Lattice& texels = result.grid.lattice;
     const IndexToWorld to_texels = index_to_index(volume.lattice(), texels);
     const auto channels = std::size_t(samples.channels);
-    ResampledGrid result{.grid = IlluminationGrid(texels, samples.channels),
-                         .lit = std::vector<std::uint8_t>(texels.count(), 0)};
     std::vector<std::size_t> repeated;
     for (std::size_t s = 0; s < samples.size(); ++s) {
       if (s % 65536 == 0) throw_if_stopped(run);
@@ -81,7 +87,6 @@ class Direct final : public Resampler {
       std::copy_n(&samples.radiance[s * channels], channels, &result.grid.values[*texel * channels]);
     }
     add_repeated(samples, to_texels, repeated, result.grid);
-    return result;
   }
 
   /// Texels with several samples get their mean.

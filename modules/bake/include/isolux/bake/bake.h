@@ -65,6 +65,9 @@ struct BakeSettings {
   /// once, for the last reflection; fewer than four follow paths. No rounds of target_rmse go beyond
   /// (BakeResult::skipped).
   std::uint64_t most_link_bytes = std::uint64_t(4) << 30;
+  /// Sites at texels whose light alone is wanted, by paths, are found and lit in so many parts of the isovalues, one
+  /// after the other, so that they need not be held all at once; 0: as many as the texels are worth, 32 at most.
+  int isovalue_parts = 0;
 };
 
 /// What lighting one side took, where both were lit.

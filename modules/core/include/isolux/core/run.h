@@ -19,4 +19,7 @@ struct Run {
 /// \throw Cancelled if the run was asked to stop.
 void throw_if_stopped(const Run& run);
 
+/// A run whose progress is that of the part from `begin` to `end` (of 1) of a longer one, which outlives it.
+[[nodiscard]] Run part_of(const Run& run, double begin, double end);
+
 }  // namespace isolux

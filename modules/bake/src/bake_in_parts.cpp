@@ -1,0 +1,129 @@
+#include "bake_in_parts.h"
+
+#include <isolux/core/stopwatch.h>
+#include <isolux/resample/fill_unlit.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <memory>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "bake_parts.h"
+#include "isovalue_parts.h"
+#include "site_figures.h"
+#include "standard_error.h"
+
+namespace isolux {
+namespace {
+
+/// Few, as each takes passes over the volume; so many that a part's sites take less than a float a texel of them all.
+constexpr std::size_t kMostParts = 32;
+constexpr std::size_t kTexelsAPart = std::size_t(1) << 18;
+
+std::size_t part_count(const BakeSettings& settings, const Lattice& texels) {
+  if (settings.isovalue_parts > 0) return std::size_t(settings.isovalue_parts);
+  return std::clamp<std::size_t>(texels.count() / kTexelsAPart, 1, kMostParts);
+}
+
+class PartBaker {
+ public:
+  PartBaker(const Volume& volume, const Scene& scene, const BakeSettings& settings, BakeResult begun,
+            const Stages& stages, const Run& run)
+      : volume_(volume),
+        scene_(scene),
+        settings_(settings),
+        run_(run),
+        texels_(texel_lattice(volume.lattice(), settings)),
+        sampler_(stages.samplers.create(settings.sampler.name, settings.sampler.settings)),
+        tracer_(stages.tracers.create(settings.tracer.name, settings.tracer.settings)),
+        resampler_(stages.resamplers.create(settings.resampler.name, settings.resampler.settings)),
+        result_(std::move(begun)) {}
+
+  BakeResult bake() {
+    const std::vector<ValueRange> parts =
+        isovalue_parts(volume_, texels_, settings_.isovalues, part_count(settings_, texels_));
+    for (std::size_t p = 0; p < parts.size(); ++p) {
+      const auto all = double(parts.size());
+      light(parts[p], part_of(run_, double(p) / all, double(p + 1) / all));
+    }
+    count_sites(volume_, texels_, settings_, run_, result_);
+    result_.least_rays = result_.most_rays = std::uint32_t(settings_.trace.rays);
+    result_.rmse_estimate = error_.root();
+    const Stopwatch watch;
+    if (settings_.wants_error_grid) result_.error = fill_unlit(std::move(errors_), run_);
+    finish_light(volume_, last_, std::move(light_), *resampler_, settings_, run_, result_);
+    result_.seconds["resample"] += watch.seconds();
+    return std::move(result_);
+  }
+
+ private:
+  void light(const ValueRange& isovalues, const Run& run) {
+    const Stopwatch finding;
+    SiteRequest request = site_request(settings_, texels_, scene_.outer);
+    request.isovalues = isovalues;
+    Sites sites = sampler_->sample(volume_, request, run);
+    result_.seconds["sites"] += finding.seconds();
+    if (sites.size() == 0) return;
+    result_.sites += sites.size();
+    const Stopwatch tracing;
+    TraceSettings trace = settings_.trace;
+    trace.nets = RayNets::kInterleaved;
+    last_ = {};
+    TraceResult traced = tracer_->trace(volume_, scene_, std::move(sites), trace, run);
+    result_.seconds["trace"] += tracing.seconds();
+    add(result_.counters, traced.counters);
+    last_ = std::move(traced.samples);
+    keep_light();
+  }
+
+  void keep_light() {
+    const Stopwatch watch;
+    error_.add(last_.variance);
+    if (light_.lit.empty()) light_ = unlit_grid(texels_, last_.channels);
+    resampler_->add_part(volume_, last_, light_, run_);
+    if (settings_.wants_error_grid) {
+      if (errors_.lit.empty()) errors_ = unlit_grid(texels_, 1);
+      SampleSet errors = standard_errors(std::move(last_));
+      resampler_->add_part(volume_, errors, errors_, run_);
+      last_ = std::move(errors);
+    }
+    result_.seconds["resample"] += watch.seconds();
+  }
+
+  const Volume& volume_;
+  const Scene& scene_;
+  const BakeSettings& settings_;
+  const Run& run_;
+  Lattice texels_;
+  std::unique_ptr<const SiteSampler> sampler_;
+  std::unique_ptr<const FlatTracer> tracer_;
+  std::unique_ptr<const Resampler> resampler_;
+  BakeResult result_;
+  ResampledGrid light_;
+  ResampledGrid errors_;
+  SampleSet last_;  ///< the samples of the last part
+  MeanVariance error_;
+};
+
+}  // namespace
+
+bool can_bake_in_parts(const Volume& volume, const BakeSettings& settings, const Stages& stages) {
+  if (settings.sampler.name != "texels" || settings.texel_sites != TexelSites::kAll ||
+      settings.bounce_method != BounceMethod::kPaths)
+    return false;
+  // Of more sites a cell, the nets that neighbours share depend on how many there are.
+  const Lattice texels = texel_lattice(volume.lattice(), settings);
+  for (int a = 0; a < 3; ++a)
+    if (texels.size[a] > volume.lattice().size[a]) return false;
+  return stages.resamplers.create(settings.resampler.name, settings.resampler.settings)->takes_parts();
+}
+
+BakeResult bake_in_parts(const Volume& volume, const Scene& scene, const BakeSettings& settings, BakeResult begun,
+                         const Stages& stages, const Run& run) {
+  return PartBaker(volume, scene, settings, std::move(begun), stages, run).bake();
+}
+
+}  // namespace isolux

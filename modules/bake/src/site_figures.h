@@ -1,0 +1,12 @@
+#pragma once
+
+#include <isolux/bake/bake.h>
+
+namespace isolux {
+
+/// Says of sites at texels why others are none, in result.skipped. \pre result.sites \throw InvalidInput if there are
+/// none at all; Cancelled
+void count_sites(const Volume& volume, const Lattice& texels, const BakeSettings& settings, const Run& run,
+                 BakeResult& result);
+
+}  // namespace isolux
