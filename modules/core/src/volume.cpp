@@ -20,8 +20,9 @@ ValueRange value_range(const Volume& volume) {
   std::size_t i = 0;
   for (; i + kColumns <= values.size(); i += kColumns) {
     for (std::size_t c = 0; c < kColumns; ++c) {
-      low[c] = std::min(low[c], values[i + c]);
-      high[c] = std::max(high[c], values[i + c]);
+      const float value = values[i + c];
+      low[c] = value < low[c] ? value : low[c];
+      high[c] = value > high[c] ? value : high[c];
     }
   }
   for (; i < values.size(); ++i) {

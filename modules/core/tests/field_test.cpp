@@ -117,6 +117,22 @@ TEST(IlluminationGrid, ReproducesARampInsideAndClampsOutside) {
   }
 }
 
+TEST(ValueRange, FindsBothEndsWhereverTheyAre) {
+  // From fewer voxels than a vector takes at once to several vectors and a rest.
+  for (const Index3 size : {Index3(2, 2, 2), Index3(5, 4, 3), Index3(7, 5, 3)}) {
+    const Volume flat = make_volume(size, [](Vec3) { return 1.0; });
+    for (std::size_t at = 0; at < flat.values.values().size(); ++at) {
+      Volume volume = flat;
+      volume.values.values()[at] = 7.0f;
+      EXPECT_EQ(value_range(volume).low, 1.0f);
+      EXPECT_EQ(value_range(volume).high, 7.0f) << at;
+      volume.values.values()[at] = -7.0f;
+      EXPECT_EQ(value_range(volume).low, -7.0f) << at;
+      EXPECT_EQ(value_range(volume).high, 1.0f);
+    }
+  }
+}
+
 TEST(RequireUsable, NamesTheFirstVoxelThatIsNotFinite) {
   Volume volume = make_volume({3, 3, 3}, [](Vec3) { return 1.0; });
   EXPECT_NO_THROW(require_usable(volume));

@@ -33,6 +33,13 @@ TEST(ParallelBlocks, StopsWhenAsked) {
   EXPECT_LT(blocks, 1000);
 }
 
+TEST(ParallelBlocks, ReportsAPartsProgressAsThatOfTheWhole) {
+  std::vector<double> seen;
+  const isolux::Run run{.threads = 1, .progress = [&](std::string_view, double part) { seen.push_back(part); }};
+  parallel_blocks(4, 1, part_of(run, 0.5, 1.0), "stage", [](const Block&) {});
+  EXPECT_EQ(seen, (std::vector<double>{0.625, 0.75, 0.875, 1.0}));
+}
+
 TEST(ParallelBlocks, PassesOnWhatTheBodyThrows) {
   EXPECT_THROW(parallel_blocks(100, 1, {.threads = 3}, "", [](const Block&) { throw InvalidInput("no"); }),
                InvalidInput);

@@ -72,21 +72,53 @@ struct Measured {
   float weight = 0.0f;
 };
 
-std::vector<Measured> measure(const NearField& near_field, double outwards, const ResampledGrid& texels,
-                              const Run& run) {
-  const Lattice& lattice = texels.grid.lattice;
-  const TexelPlaces places(near_field, lattice);
-  std::vector<Measured> measured(lattice.count());
-  for_each_texel(lattice, run, [&](std::size_t t, int i, int j, int k) {
-    if (texels.lit[t] == 0) return;
-    const TexelPlace place = places.at(i, j, k);
-    for (int s = 0; s < 3; ++s) {
-      measured[t].openness[s] = near_field.openness(place.index, place.ahead, place.isovalue, outwards * kSteps[s]);
+/// Layers of texels, measured when they are wanted and let go after the next two.
+class MeasuredLayers {
+ public:
+  MeasuredLayers(const NearField& near_field, double outwards, const ResampledGrid& texels)
+      : near_field_(near_field),
+        outwards_(outwards),
+        texels_(texels),
+        places_(near_field, texels.grid.lattice),
+        layer_(std::size_t(texels.grid.lattice.size.x) * std::size_t(texels.grid.lattice.size.y)) {}
+
+  /// Layer k, by the texel's number within it. Good until layer k + 3.
+  [[nodiscard]] const std::vector<Measured>& at(int k) {
+    Kept& kept = kept_[std::size_t(k % 3)];
+    if (kept.k != k) measure(k, kept);
+    return kept.measured;
+  }
+
+ private:
+  struct Kept {
+    int k = -1;
+    std::vector<Measured> measured;
+  };
+
+  void measure(int k, Kept& kept) const {
+    const Index3& size = texels_.grid.lattice.size;
+    kept.k = k;
+    kept.measured.assign(layer_, {});
+    std::size_t n = 0;
+    for (int j = 0; j < size.y; ++j) {
+      for (int i = 0; i < size.x; ++i, ++n) {
+        if (texels_.lit[std::size_t(k) * layer_ + n] == 0) continue;
+        const TexelPlace place = places_.at(i, j, k);
+        Measured& of = kept.measured[n];
+        for (int s = 0; s < 3; ++s)
+          of.openness[s] = near_field_.openness(place.index, place.ahead, place.isovalue, outwards_ * kSteps[s]);
+        of.weight = float(std::sqrt(place.ahead.fall));
+      }
     }
-    measured[t].weight = float(std::sqrt(place.ahead.fall));
-  });
-  return measured;
-}
+  }
+
+  const NearField& near_field_;
+  double outwards_;
+  const ResampledGrid& texels_;
+  TexelPlaces places_;
+  std::size_t layer_;
+  std::array<Kept, 3> kept_;
+};
 
 /// Sums over texels, and over pairs of opposite neighbours of what a texel has more than these have on average.
 struct Moments {
@@ -107,48 +139,68 @@ struct Moments {
   }
 };
 
-void add_pair(const std::vector<float>& values, int channels, const std::vector<Measured>& measured, std::size_t texel,
-              std::size_t stride, Moments& sum) {
-  const Measured& here = measured[texel];
-  const Measured& before = measured[texel - stride];
-  const Measured& after = measured[texel + stride];
-  if (!(before.weight > 0.0f && after.weight > 0.0f)) return;
-  const Vec3 more = Vec3(here.openness) - 0.5 * (Vec3(before.openness) + Vec3(after.openness));
-  const auto weight = double(here.weight);
+/// A texel and two opposite neighbours of it: their numbers and what was measured there.
+struct Pair {
+  std::array<std::size_t, 3> texels;  ///< before, here, after
+  std::array<const Measured*, 3> measured;
+};
+
+void add_pair(const std::vector<float>& values, int channels, const Pair& pair, Moments& sum) {
+  const auto& [before, here, after] = pair.measured;
+  if (!(before->weight > 0.0f && after->weight > 0.0f)) return;
+  const Vec3 more = Vec3(here->openness) - 0.5 * (Vec3(before->openness) + Vec3(after->openness));
+  const auto weight = double(here->weight);
   sum.openness += weight * glm::outerProduct(more, more);
   const auto n = std::size_t(channels);
   for (int c = 0; c < channels; ++c) {
-    const auto e = [&](std::size_t t) { return double(values[t * n + std::size_t(c)]); };
-    const double lighter = e(texel) - 0.5 * (e(texel - stride) + e(texel + stride));
+    const auto e = [&](std::size_t t) { return double(values[pair.texels[t] * n + std::size_t(c)]); };
+    const double lighter = e(1) - 0.5 * (e(0) + e(2));
     sum.by_channel[std::size_t(c)] += weight * lighter * more;
     sum.light[c] += weight * lighter * lighter;
   }
   sum.rows += 1.0;
 }
 
-Moments moments(const IlluminationGrid& grid, const std::vector<Measured>& measured, const Run& run) {
+Moments moments_of_layer(const IlluminationGrid& grid, MeasuredLayers& layers, int k) {
   const Index3& size = grid.lattice.size;
-  std::vector<Moments> layers(std::size_t(size.z));
-  parallel_blocks(layers.size(), 1, run, "", [&](const Block& block) {
-    const int k = int(block.index);
-    Moments& sum = layers[block.index];
-    for (int j = 0; j < size.y; ++j) {
-      for (int i = 0; i < size.x; ++i) {
-        const std::size_t t = grid.lattice.offset(i, j, k);
-        if (!(measured[t].weight > 0.0f)) continue;
-        sum.mean += Vec3(measured[t].openness);
-        sum.texels += 1.0;
-        const Index3 at(i, j, k);
-        std::size_t stride = 1;
-        for (int a = 0; a < 3; ++a) {
-          if (at[a] > 0 && at[a] + 1 < size[a]) add_pair(grid.values, grid.channels, measured, t, stride, sum);
-          stride *= std::size_t(size[a]);
-        }
-      }
+  const std::size_t stride[3] = {1, std::size_t(size.x), std::size_t(size.x) * std::size_t(size.y)};
+  const std::size_t first = grid.lattice.offset(0, 0, k);
+  const bool is_between = k > 0 && k + 1 < size.z;
+  const std::vector<Measured>* below = is_between ? &layers.at(k - 1) : nullptr;
+  const std::vector<Measured>& here = layers.at(k);
+  const std::vector<Measured>* above = is_between ? &layers.at(k + 1) : nullptr;
+  Moments sum;
+  std::size_t n = 0;
+  for (int j = 0; j < size.y; ++j) {
+    for (int i = 0; i < size.x; ++i, ++n) {
+      if (!(here[n].weight > 0.0f)) continue;
+      sum.mean += Vec3(here[n].openness);
+      sum.texels += 1.0;
+      const std::size_t t = first + n;
+      const auto add = [&](std::size_t step, const Measured& before, const Measured& after) {
+        add_pair(grid.values, grid.channels, {{t - step, t, t + step}, {&before, &here[n], &after}}, sum);
+      };
+      if (i > 0 && i + 1 < size.x) add(stride[0], here[n - 1], here[n + 1]);
+      if (j > 0 && j + 1 < size.y) add(stride[1], here[n - stride[1]], here[n + stride[1]]);
+      if (is_between) add(stride[2], (*below)[n], (*above)[n]);
     }
+  }
+  return sum;
+}
+
+/// Layers that follow each other on one thread measure what lies between them once.
+std::size_t layers_a_block(std::size_t layers, const Run& run) {
+  return std::clamp<std::size_t>(layers / (4 * std::size_t(thread_count(run))), 4, 32);
+}
+
+Moments moments(const NearField& near_field, double outwards, const ResampledGrid& texels, const Run& run) {
+  std::vector<Moments> by_layer(std::size_t(texels.grid.lattice.size.z));
+  parallel_blocks(by_layer.size(), layers_a_block(by_layer.size(), run), run, "", [&](const Block& block) {
+    MeasuredLayers layers(near_field, outwards, texels);
+    for (std::size_t k = block.begin; k < block.end; ++k) by_layer[k] = moments_of_layer(texels.grid, layers, int(k));
   });
   Moments all;
-  for (const Moments& layer : layers) all += layer;
+  for (const Moments& layer : by_layer) all += layer;
   return all;
 }
 
@@ -172,7 +224,7 @@ std::optional<Vec3> weights(const Moments& sum, int channel) {
 void estimate_near_field(const Volume& volume, double outwards, ResampledGrid& texels, const Run& run) {
   const NearField near_field(volume);
   IlluminationGrid& grid = texels.grid;
-  const Moments sum = moments(grid, measure(near_field, outwards, texels, run), run);
+  const Moments sum = moments(near_field, outwards, texels, run);
   std::vector<NearFieldTerm> terms;
   for (int s = 0; s < 3; ++s) {
     terms.push_back({.step = float(outwards * kSteps[std::size_t(s)]),
