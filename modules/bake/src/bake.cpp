@@ -96,7 +96,7 @@ BakeResult bake_side(const Volume& volume, const Scene& scene, const BakeSetting
     return bake_side(volume, scene, by_paths, std::move(found), stages, run);
   }
   if (keeps_rays(settings, scene, found.sites.size()))
-    return KeptRays(volume, scene, settings, std::move(found), stages, run).light(scene, run);
+    return KeptRays(volume, scene, settings, std::move(found), stages, run).last_light(scene, run);
   if (!has_target(settings)) {
     if (!can_bake_in_parts(volume, settings, stages))
       return bake_paths(volume, scene, settings, std::move(found), stages, run);

@@ -109,6 +109,24 @@ std::vector<std::uint32_t> KeptRays::wanting(const Solution& solution, double so
 
 BakeResult KeptRays::light(const Scene& scene, const Run& run) {
   BakeResult result = std::exchange(begun_, {});
+  SampleSet samples = trace_and_solve(scene, run, result);
+  samples.sites = links_->sites();
+  finish_bake(volume_, std::move(samples), *resampler_, texels_, settings_, run, result);
+  return result;
+}
+
+BakeResult KeptRays::last_light(const Scene& scene, const Run& run) && {
+  BakeResult result = std::exchange(begun_, {});
+  SampleSet samples = trace_and_solve(scene, run, result);
+  samples.sites = std::move(*links_).take_sites();
+  links_.reset();
+  means_.reset();
+  last_ = {};
+  finish_bake(volume_, std::move(samples), *resampler_, texels_, settings_, run, result);
+  return result;
+}
+
+SampleSet KeptRays::trace_and_solve(const Scene& scene, const Run& run, BakeResult& result) {
   Stopwatch solving;
   Solution solution = solve(scene, run, result);
   for (int round = 0; has_target(settings_) && round < kMostRounds; ++round) {
@@ -131,8 +149,7 @@ BakeResult KeptRays::light(const Scene& scene, const Run& run) {
   const bool missed = settings_.target_rmse > 0.0 && standard_error(solution.samples.variance) > settings_.target_rmse;
   if (settings_.trace.bounces != 0 && missed && !(settings_.target_seconds > 0.0))
     result.skipped["rounds_beyond_memory"] = 1;
-  finish_bake(volume_, std::move(solution.samples), *resampler_, texels_, settings_, run, result);
-  return result;
+  return std::move(solution.samples);
 }
 
 }  // namespace isolux

@@ -108,7 +108,7 @@ void calibrate_variance(SampleSet& samples, std::span<const std::size_t> probes,
       ++tally->count;
     }
   }
-  for (std::size_t site = 0; site < samples.size(); ++site) {
+  for (std::size_t site = 0; site < samples.variance.size(); ++site) {
     if (samples.variance[site] == kUnknownVariance) continue;
     const auto own = by_rays.find(rays.empty() ? 0 : rays[site]);
     const Tally& tally = own != by_rays.end() && own->second.count >= kEnough ? own->second : all;

@@ -46,7 +46,11 @@ class Direct final : public Resampler {
                          const Run& run) const override {
     require_samples(samples);
     ResampledGrid result = unlit_grid(texels, samples.channels);
-    place(volume, options_.denoise ? denoised(volume, samples, run) : samples, result, run);
+    if (options_.denoise) {
+      place(volume, denoised(volume, samples, run), result, run);
+    } else {
+      place(volume, samples, result, run);
+    }
     return result;
   }
 

@@ -30,11 +30,15 @@ class KeptRays {
   /// starts from the first one's light. BakeResult::counters are those of all rays so far. \throw as bake();
   /// InvalidInput if the scene's outer side is another one
   [[nodiscard]] BakeResult light(const Scene& scene, const Run& run);
+  /// The same, where no other light is wanted: what is kept is let go before the texels are made.
+  [[nodiscard]] BakeResult last_light(const Scene& scene, const Run& run) &&;
 
   [[nodiscard]] std::uint64_t rays() const { return links_->counters().rays; }
   [[nodiscard]] std::size_t bytes() const { return links_->bytes(); }
 
  private:
+  /// e at the links' sites, without these, and what finding it took.
+  [[nodiscard]] SampleSet trace_and_solve(const Scene& scene, const Run& run, BakeResult& result);
   [[nodiscard]] Solution solve(const Scene& scene, const Run& run, BakeResult& result);
   /// The light that reflections read.
   [[nodiscard]] IlluminationGrid between_reflections(const SampleSet& samples, const Run& run);

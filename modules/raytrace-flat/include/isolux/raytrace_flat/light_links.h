@@ -14,6 +14,7 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 namespace isolux {
@@ -56,7 +57,7 @@ struct SolveSettings {
 };
 
 struct Solution {
-  SampleSet samples;           ///< e at the sites
+  SampleSet samples;           ///< e at LightLinks::sites(), which are not repeated here
   int sweeps = 0;              ///< over the links
   double change = 0.0;         ///< what was left to come after the last sweep, estimated; rms over the rms of e
   TraceCounters counters;      ///< shadow rays, and rays that are not kept
@@ -95,6 +96,8 @@ class LightLinks {
   void append(const Sites& more, const Run& run);
 
   [[nodiscard]] const Sites& sites() const { return sites_; }
+  /// The sites, where nothing else is wanted of the links any more.
+  [[nodiscard]] Sites take_sites() && { return std::move(sites_); }
   /// Rays of each site.
   [[nodiscard]] std::span<const std::uint32_t> rays() const { return rays_; }
   [[nodiscard]] const TraceCounters& counters() const { return counters_; }
