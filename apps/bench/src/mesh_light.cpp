@@ -3,6 +3,7 @@
 #include <isolux/core/parallel.h>
 #include <isolux/core/random.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <glm/geometric.hpp>
@@ -34,13 +35,15 @@ std::vector<float> light_vertices(const EmbreeMesh& embree, EmbreeCall call, con
   }
   const float offset = 1e-5f * size;
   std::vector<float> light(count);
-  parallel_blocks(count, 64, run, {}, [&](const Block& block) {
+  constexpr std::size_t kRun = 64;
+  const std::size_t left_out = (mesh.n_vertices() - count) / std::max<std::size_t>(block_count(count, kRun), 1);
+  parallel_blocks(count, kRun, run, {}, [&](const Block& block) {
     const auto n = std::size_t(rays);
     std::vector<Vec3f> origins(n);
     std::vector<Vec3f> directions(n);
     std::vector<std::uint8_t> hits(n);
     for (std::size_t i = block.begin; i < block.end; ++i) {
-      const auto vertex = mesh.vertex_handle(unsigned(i));
+      const auto vertex = mesh.vertex_handle(unsigned(i + block.index * left_out));
       const auto& p = mesh.point(vertex);
       const auto& m = mesh.normal(vertex);
       const Vec3f normal(m[0], m[1], m[2]);

@@ -21,7 +21,7 @@ namespace {
 
 /// Few, as each takes passes over the volume; so many that a part's sites take less than a float a texel of them all.
 constexpr std::size_t kMostParts = 32;
-constexpr std::size_t kTexelsAPart = std::size_t(1) << 18;
+constexpr std::size_t kTexelsAPart = std::size_t(1) << 19;
 
 std::size_t part_count(const BakeSettings& settings, const Lattice& texels) {
   if (settings.isovalue_parts > 0) return std::size_t(settings.isovalue_parts);
