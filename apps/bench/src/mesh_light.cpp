@@ -35,7 +35,7 @@ std::vector<float> light_vertices(const EmbreeMesh& embree, EmbreeCall call, con
   }
   const float offset = 1e-5f * size;
   std::vector<float> light(count);
-  constexpr std::size_t kRun = 64;
+  constexpr std::size_t kRun = 16;
   const std::size_t left_out = (mesh.n_vertices() - count) / std::max<std::size_t>(block_count(count, kRun), 1);
   parallel_blocks(count, kRun, run, {}, [&](const Block& block) {
     const auto n = std::size_t(rays);
