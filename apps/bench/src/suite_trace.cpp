@@ -189,9 +189,7 @@ void measure_sizes(const SuiteContext& context, Figures& figures) {
     for (std::size_t t = 0; t < threads.size(); ++t) {
       Run run = context.run;
       run.threads = threads[t];
-      // The real volumes are given as much as one size.
-      const double seconds =
-          context.budget.share((sizes.size() + 1 - s) * threads.size() - t) / double(names.size() + 1);
+      const double seconds = context.budget.share((sizes.size() - s) * threads.size() - t) / double(names.size() + 1);
       for (std::size_t i = 0; i <= names.size(); ++i) {
         Series& series = rates[t * (names.size() + 1) + i];
         Estimate rate;
@@ -221,13 +219,14 @@ void measure_real(const SuiteContext& context, Figures& figures) {
   const std::vector<std::pair<std::string, float>> real{
       {"neghip_64x64x64_uint8.raw", 80.0f}, {"engine.nrrd", 110.0f}, {"bonsai.nrrd", 90.0f}};
   const std::vector<std::string> names = tracer_names(context);
-  std::size_t left = context.effort == Effort::kFull ? real.size() : 1;
+  const std::size_t count = context.effort == Effort::kFull ? real.size() : 1;
   Run run = context.run;
   run.threads = 1;
-  for (const auto& [file, isovalue] : real) {
-    if (left == 0) break;
+  for (std::size_t v = 0; v < count; ++v) {
+    const auto& [file, isovalue] = real[v];
     context.say(file);
-    const double seconds = 0.8 * context.budget.share(left--) / double(names.size() + 1);
+    // A fifth of all for all of them, before the sizes, which take as long as they take.
+    const double seconds = context.budget.share(5 * count - v) / double(names.size() + 1);
     const Volume volume = read_volume(context.data_folder + "/" + file);
     for (const std::string& name : names)
       add_row(figures.all, file, run.threads, name, tracer_speed(name, volume, isovalue, run, seconds, context));
@@ -276,8 +275,8 @@ SuiteReport run_trace(const SuiteContext& context) {
       "Cells of one value hold no level set; a cell has to be tested where it reaches the isovalue of a ray that "
       "crosses "
       "it. 64 rays from one site for every 64 cells or fewer.";
-  measure_sizes(context, figures);
   if (!context.data_folder.empty() && context.effort != Effort::kSmoke) measure_real(context, figures);
+  measure_sizes(context, figures);
   report.highlights.push_back(comparison(figures.all, default_tracer(context)));
   report.figures.emplace_back(std::move(figures.sizes));
   report.figures.emplace_back(std::move(figures.work));

@@ -63,7 +63,7 @@ TracerSpeed tracer_speed(const std::string& tracer, const Volume& volume, float 
   std::size_t count = 2048;
   for (const double part : {0.05, 0.15}) {
     // Rays have to take about as long as what is subtracted, or its noise is all that is left.
-    const double wanted_seconds = std::max(part * seconds, std::min(speed.setup_seconds, 0.3 * seconds));
+    const double wanted_seconds = std::max(part * seconds, speed.setup_seconds);
     const std::size_t wanted = grown(count, beyond_setup(dense.some(count)), wanted_seconds);
     count = std::clamp<std::size_t>(wanted, count, 4u << 20);
   }
