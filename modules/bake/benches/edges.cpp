@@ -83,11 +83,12 @@ struct Truth {
   std::vector<std::uint8_t> on_edge;
 };
 
-SampleSet trace_in(const Subject& subject, Sites sites, int rays, std::uint64_t seed) {
+SampleSet trace_in(const Subject& subject, Sites sites, int rays, std::uint64_t seed,
+                   LampLight lamps = LampLight::kWithin) {
   return tracers()
       .create()
       ->trace(subject.volume, subject.scene, std::move(sites),
-              {.rays = rays, .bounces = 0, .nets = RayNets::kInterleaved}, {.seed = seed})
+              {.rays = rays, .bounces = 0, .nets = RayNets::kInterleaved, .lamps = lamps}, {.seed = seed})
       .samples;
 }
 
@@ -127,10 +128,11 @@ struct Errors {
 Errors errors_of(const Subject& subject, const Truth& truth, const Scheme& scheme, std::uint64_t seed) {
   const Lattice texels = cell_lattice(subject.volume.lattice());
   const SiteRequest request{.texels = texels, .per_texel = scheme.sites};
-  const SampleSet samples = trace_in(
-      subject, samplers().create(scheme.sampler)->sample(subject.volume, request, {.seed = seed}), scheme.rays, seed);
-  const IlluminationGrid light = fill_unlit(
-      resamplers().create(scheme.resampler, scheme.settings)->resample(subject.volume, samples, texels, {}), {});
+  const auto resampler = resamplers().create(scheme.resampler, scheme.settings);
+  const SampleSet samples =
+      trace_in(subject, samplers().create(scheme.sampler)->sample(subject.volume, request, {.seed = seed}), scheme.rays,
+               seed, resampler->lamps());
+  const IlluminationGrid light = fill_unlit(resampler->resample(subject.volume, samples, texels, {}), {});
   const LightReader reader(subject.volume, light);
   Errors errors;
   for (std::size_t i = 0; i < truth.points.size(); ++i) {

@@ -32,6 +32,7 @@ BakeResult bake_paths(const Volume& volume, const Scene& scene, const BakeSettin
   const Stopwatch watch;
   TraceSettings trace = settings.trace;
   trace.nets = RayNets::kInterleaved;
+  trace.lamps = resampler->lamps();
   TraceResult traced = tracer->trace(volume, scene, std::move(found.sites), trace, run);
   result.seconds["trace"] = watch.seconds();
   result.counters = traced.counters;

@@ -47,6 +47,7 @@ int kept_rays_a_site(const BakeSettings& settings, std::size_t sites, int rays) 
 
 SampleSet standard_errors(SampleSet samples) {
   samples.channels = 1;
+  samples.lamps = samples.lamps_variance = {};  // parts of the light, not of its error
   samples.radiance.resize(samples.size());
   std::transform(samples.variance.begin(), samples.variance.end(), samples.radiance.begin(),
                  [](float variance) { return std::sqrt(variance); });

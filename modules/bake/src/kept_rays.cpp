@@ -75,7 +75,8 @@ Solution KeptRays::solve(const Scene& scene, const Run& run, BakeResult& result)
   const SolveSettings settings{.bounces = settings_.trace.bounces,
                                .gradient = settings_.trace.gradient,
                                .one_of = one_of_,
-                               .ends_one_of = ends_one_of_};
+                               .ends_one_of = ends_one_of_,
+                               .lamps = resampler_->lamps()};
   Solution solution = links_->solve(
       scene, settings, [&](const SampleSet& samples) { return between_reflections(samples, run); }, run, last_);
   last_ = solution.samples.radiance;

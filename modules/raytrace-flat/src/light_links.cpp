@@ -185,6 +185,8 @@ SampleSet LightLinks::reflecting(const Scene& scene, std::span<const float> texe
 void LightLinks::reflect_last(const SceneParts& parts, const SampleSet& lamps, const TargetLight& light,
                               const SolveSettings& settings, Solution& solution, const Run& run) const {
   solution.samples = reflected(parts.soft(), lamps, light, solution, run);
+  if (settings.lamps == LampLight::kToldApart && !lamps.radiance.empty())
+    wide::tell_lamps_apart(solution.samples, lamps);
   if (again_ == nullptr) return;
   // The probes see the same light with other rays.
   Run quiet = run;

@@ -12,9 +12,11 @@ namespace isolux {
 /// mean squared error is estimated from what it leaves (Stein, "Estimation of the mean of a multivariate normal
 /// distribution", 1981), the noise being the part of that which neighbours do not share; the better share more in the
 /// result, and the samples themselves are one of the choices, their noise counted as far as reading leaves it. Samples
-/// of two sides of an edge are not fitted together: shadow edges and thin walls stay. The same bits for any number of
-/// threads. Cost: some 32 microseconds of a thread a sample, 40 bytes. \throw InvalidInput as resample() does;
-/// Cancelled
+/// of two sides of an edge are not fitted together: shadow edges and thin walls stay. Lamps' light told apart
+/// (SampleSet::lamps) and the rest are denoised each on its own: where a lamp's light is known, it stays what it is,
+/// edges included, and does not part the windows of the rest. The same bits for any number of threads. Cost: some 32
+/// microseconds of a thread a sample whose neighbours are noisy, 80 bytes; most of a sun's light costs a few. \throw
+/// InvalidInput as resample() does; Cancelled
 [[nodiscard]] SampleSet denoised(const Volume& volume, const SampleSet& samples, const Run& run);
 
 }  // namespace isolux

@@ -15,7 +15,7 @@ void LocalFit<kCoordinates>::add(double weight, const Coordinates& at, const flo
 }
 
 template <std::size_t kCoordinates>
-double LocalFit<kCoordinates>::at_origin(double ridge, float* values, std::size_t channels) const {
+auto LocalFit<kCoordinates>::at_origin(double ridge, float* values, std::size_t channels) const -> Influence {
   // Slopes are eliminated first, so that what is left in the last row is the value's own equation. The light is taken
   // relative to its mean, which keeps constants exact.
   const double total = matrix_[0][0];
@@ -48,7 +48,16 @@ double LocalFit<kCoordinates>::at_origin(double ridge, float* values, std::size_
   const double pivot = a[kSlopes][kSlopes];
   const bool sound = pivot > 1e-6 * total;
   for (std::size_t c = 0; c < channels; ++c) values[c] = float(mean[c] + (sound ? b[kSlopes][c] / pivot : 0.0));
-  return 1.0 / (sound ? pivot : total);
+  Influence influence{.there = 1.0 / (sound ? pivot : total)};
+  if (!sound) return influence;
+  // The matrix's inverse times the value's unit vector, of which elimination has left the last row alone.
+  for (std::size_t p = kSlopes; p-- > 0;) {
+    if (!(a[p][p] > 0.0)) continue;
+    double sum = a[p][kSlopes] * influence.there;
+    for (std::size_t j = p + 1; j < kSlopes; ++j) sum += a[p][j] * influence.slopes[j];
+    influence.slopes[p] = -sum / a[p][p];
+  }
+  return influence;
 }
 
 template class LocalFit<4>;

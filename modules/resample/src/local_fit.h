@@ -15,10 +15,21 @@ class LocalFit {
   /// `at` relative to where the function is wanted.
   void add(double weight, const Coordinates& at, const float* values, std::size_t channels);
 
+  /// By how much the function at the origin follows a sample, for each unit of its weight.
+  struct Influence {
+    double there = 0.0;  ///< of a sample at the origin
+    Coordinates slopes{};
+
+    [[nodiscard]] double of(const Coordinates& at) const {
+      double sum = there;
+      for (std::size_t i = 0; i < kCoordinates; ++i) sum += slopes[i] * at[i];
+      return sum;
+    }
+  };
+
   /// Writes the function at the origin, the weighted mean where the samples do not tell slopes. `ridge`, in parts of
-  /// the coordinates' own mean spread, pulls slopes to zero. Returns by how much the function there follows a sample
-  /// there of weight one.
-  double at_origin(double ridge, float* values, std::size_t channels) const;
+  /// the coordinates' own mean spread, pulls slopes to zero.
+  Influence at_origin(double ridge, float* values, std::size_t channels) const;
 
  private:
   static constexpr std::size_t kUnknowns = kCoordinates + 1;

@@ -137,5 +137,57 @@ TEST(Direct, DenoisingLeavesExactSamplesAlone) {
   }
 }
 
+/// What resampler direct makes of samples at the cell centres of `volume`, denoised.
+std::vector<float> denoised_texels(const Volume& volume, const SampleSet& samples, int threads = 0) {
+  Run run;
+  if (threads > 0) run.threads = threads;
+  const auto denoiser = resamplers().create("direct", {{"denoise", "true"}});
+  return denoiser->resample(volume, samples, cell_lattice(volume.lattice()), run).grid.values;
+}
+
+/// A lamp's light of one step, half of the height of the noise of the rest, and what lamps shine told apart.
+SampleSet beside_a_lamp(const SampleSet& rest) {
+  SampleSet samples = rest;
+  samples.lamps_variance.assign(rest.size(), 0.0f);
+  for (std::size_t s = 0; s < rest.size(); ++s) {
+    samples.lamps.push_back(rest.sites.positions[s].y < 6.0f ? 0.0f : 0.1f);
+    samples.radiance[s] += samples.lamps[s];
+  }
+  return samples;
+}
+
+// A step below the noise is one that no window can see: mixed with the rest, it would be smoothed away.
+TEST(Direct, DenoisesTheRestAndLeavesTheEdgesOfKnownLampsAlone) {
+  const Volume volume = ramp_volume({13, 13, 13});
+  const SampleSet rest = noisy_step(volume, 0.2);
+  const SampleSet samples = beside_a_lamp(rest);
+  const std::vector<float> whole = denoised_texels(volume, samples);
+  const std::vector<float> without = denoised_texels(volume, rest);
+  // The rest is the difference of floats up to 4 and is added up again: their rounding, which least squares and choices
+  // by sixth powers make somewhat larger.
+  for (std::size_t t = 0; t < whole.size(); ++t) EXPECT_NEAR(whole[t], without[t] + samples.lamps[t], 2e-5f);
+}
+
+TEST(Direct, DenoisesLampsThatAreNoisyToo) {
+  const Volume volume = ramp_volume({13, 13, 13});
+  SampleSet samples = noisy_step(volume, 0.2);
+  samples.lamps = samples.radiance;  // nothing else shines
+  samples.lamps_variance = samples.variance;
+  EXPECT_EQ(denoised_texels(volume, samples), denoised_texels(volume, noisy_step(volume, 0.2)));
+}
+
+TEST(Direct, DenoisesToTheSameBitsForAnyNumberOfThreads) {
+  const Volume volume = ramp_volume({13, 13, 13});
+  const SampleSet samples = beside_a_lamp(noisy_step(volume, 0.2));
+  const std::vector<float> one = denoised_texels(volume, samples, 1);
+  EXPECT_EQ(one, denoised_texels(volume, samples, 2));
+  EXPECT_EQ(one, denoised_texels(volume, samples, 5));
+}
+
+TEST(Direct, AsksForLampsToldApartOnlyToDenoise) {
+  EXPECT_EQ(resamplers().create("direct")->lamps(), LampLight::kWithin);
+  EXPECT_EQ(resamplers().create("direct", {{"denoise", "true"}})->lamps(), LampLight::kToldApart);
+}
+
 }  // namespace
 }  // namespace isolux

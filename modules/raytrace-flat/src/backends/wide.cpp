@@ -49,11 +49,10 @@ class WideTracer final : public FlatTracer {
              SampleSet& samples, TraceCounters& counters) const {
     samples.channels = is_grey(scene) ? 1 : 3;
     wide::put_darkness(samples, std::size_t(settings.rays));
-    if (settings.bounces == 0) {
+    if (settings.bounces == 0)
       without_reflections(volume, scene, settings, run, samples, counters);
-    } else {
-      by_paths(volume, scene, settings, run, samples, counters);
-    }
+    else
+      with_reflections(volume, scene, settings, run, samples, counters);
   }
 
   /// What is seen of the sky, suns and other lamps each by what asks least; their sums and variances add up.
@@ -61,22 +60,40 @@ class WideTracer final : public FlatTracer {
                            SampleSet& samples, TraceCounters& counters) const {
     Scene lamps = scene;
     std::erase_if(lamps.lights, [](const Light& light) { return std::holds_alternative<SunLight>(light); });
-    if (!lamps.lights.empty()) by_paths(volume, lamps_of(lamps), settings, run, samples, counters);
+    if (!lamps.lights.empty()) by_paths(volume, lamps_of(lamps), settings, run, samples, nullptr, counters);
     const SceneParts parts(scene);
-    add(counters, add_sky_light(volume, parts.soft(), settings, run, samples));
     if (parts.bright() != nullptr)
       add(counters, add_bright_light(volume, scene.outer, *parts.bright(), settings, run, samples));
     for (std::size_t i = 0; i < scene.lights.size(); ++i)
       if (const auto* sun = std::get_if<SunLight>(&scene.lights[i]))
         add(counters, add_sun_light(volume, scene.outer, *sun, std::uint32_t(i), settings, run, samples));
+    if (tells_apart(scene, settings, parts.bright() != nullptr)) wide::tell_lamps_apart(samples, samples);
+    add(counters, add_sky_light(volume, parts.soft(), settings, run, samples));
+  }
+
+  void with_reflections(const Volume& volume, const Scene& scene, const TraceSettings& settings, const Run& run,
+                        SampleSet& samples, TraceCounters& counters) const {
+    if (!tells_apart(scene, settings, false)) {
+      by_paths(volume, scene, settings, run, samples, nullptr, counters);
+      return;
+    }
+    SampleSet lamps{
+        .sites = {}, .channels = samples.channels, .radiance = samples.radiance, .variance = samples.variance};
+    by_paths(volume, scene, settings, run, samples, &lamps, counters);
+    wide::tell_lamps_apart(samples, lamps);
+  }
+
+  static bool tells_apart(const Scene& scene, const TraceSettings& settings, bool aims_at_image) {
+    return settings.lamps == LampLight::kToldApart && (aims_at_image || !scene.lights.empty());
   }
 
   void by_paths(const Volume& volume, const Scene& scene, const TraceSettings& settings, const Run& run,
-                SampleSet& samples, TraceCounters& counters) const {
+                SampleSet& samples, SampleSet* lamps, TraceCounters& counters) const {
     const wide::PathWaves waves(volume, scene, settings, options_.limits, run.seed, samples.sites);
-    add(counters, wide::trace_blocks(
-                      volume, samples.sites, scene.outer, waves.aimer().rays(), run,
-                      [&](const wide::SiteBlock& block, TraceCounters& part) { waves.light(block, samples, part); }));
+    add(counters, wide::trace_blocks(volume, samples.sites, scene.outer, waves.aimer().rays(), run,
+                                     [&](const wide::SiteBlock& block, TraceCounters& part) {
+                                       waves.light(block, samples, lamps, part);
+                                     }));
   }
 
   Options options_;

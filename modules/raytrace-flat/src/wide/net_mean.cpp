@@ -62,6 +62,13 @@ void put_darkness(SampleSet& samples, std::size_t rays) {
     samples.variance[site] = rays > 1 && samples.sites.normals[site] != Vec3f(0.0f) ? 0.0f : kUnknownVariance;
 }
 
+void tell_lamps_apart(SampleSet& samples, const SampleSet& lamps) {
+  samples.lamps = lamps.radiance;
+  samples.lamps_variance = lamps.variance;
+  for (float& variance : samples.lamps_variance)
+    if (variance == kUnknownVariance) variance = 0.0f;
+}
+
 std::vector<std::size_t> choose_probes(const Sites& sites) {
   constexpr std::size_t kEnough = 512;  // leaves some 5 % of doubt about the factor
   constexpr std::size_t kOneOf = 64;
@@ -113,6 +120,7 @@ void calibrate_variance(SampleSet& samples, std::span<const std::size_t> probes,
     const auto own = by_rays.find(rays.empty() ? 0 : rays[site]);
     const Tally& tally = own != by_rays.end() && own->second.count >= kEnough ? own->second : all;
     samples.variance[site] *= float(tally.scale());
+    if (!samples.lamps_variance.empty()) samples.lamps_variance[site] *= float(tally.scale());
   }
 }
 

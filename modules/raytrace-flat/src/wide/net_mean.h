@@ -40,6 +40,10 @@ class NetMean {
 /// What light is added to: e = 0, of known error where there is a normal and more than one ray.
 void put_darkness(SampleSet& samples, std::size_t rays);
 
+/// Says of `samples` that radiance and variance of `lamps` are what lamps send straight there. Errors that are not
+/// known are the rest's.
+void tell_lamps_apart(SampleSet& samples, const SampleSet& lamps);
+
 /// The sites with a normal whose light is found twice, to know by how much NetMean's variances are too large: all of
 /// few, one of 64 of many.
 [[nodiscard]] std::vector<std::size_t> choose_probes(const Sites& sites);

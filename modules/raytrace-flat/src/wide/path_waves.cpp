@@ -39,6 +39,7 @@ struct PathWaves::Wave {
   std::span<const std::uint32_t> sites;
   std::vector<Material> materials;  ///< of each site
   std::vector<Vec3> value;          ///< of each ray of the first wave
+  std::vector<Vec3> lamps;          ///< what of it comes straight from light sources; empty: not asked for
   std::vector<Path> paths;          ///< one a ray of `batch`
   Batch batch;
 };
@@ -71,9 +72,10 @@ UnitPair PathWaves::numbers(const Wave& wave, const Path& path, std::uint32_t di
       .pair(path.ray % rays, std::uint32_t(wave.depth) * pairs_a_vertex + dimension);
 }
 
-void PathWaves::light(const SiteBlock& block, SampleSet& samples, TraceCounters& counters) const {
+void PathWaves::light(const SiteBlock& block, SampleSet& samples, SampleSet* lamps, TraceCounters& counters) const {
   static thread_local Wave wave;
   start(block, samples.sites, wave);
+  wave.lamps.assign(lamps != nullptr ? wave.value.size() : 0, Vec3(0.0));
   for (wave.depth = 0; !wave.paths.empty(); ++wave.depth) {
     if (!lights_.empty() || environment_.has_samples()) direct_light(block, wave, counters);
     if (is_dark(wave)) break;
@@ -90,6 +92,7 @@ void PathWaves::light(const SiteBlock& block, SampleSet& samples, TraceCounters&
     const std::uint32_t site = block.sites[s];
     if (samples.sites.normals[site] == Vec3f(0.0f)) continue;
     mean_.add(mean_.moments(std::span(wave.value).subspan(s * rays, rays)), site, samples);
+    if (lamps != nullptr) mean_.add(mean_.moments(std::span(wave.lamps).subspan(s * rays, rays)), site, *lamps);
   }
 }
 
@@ -205,6 +208,8 @@ void PathWaves::direct_light(const SiteBlock& block, Wave& wave, TraceCounters& 
     }
     look(block, wave, sightings, counters);
   }
+  // Nothing else has been added yet.
+  if (wave.depth == 0 && !wave.lamps.empty()) wave.lamps = wave.value;
   if (!environment_.has_samples()) return;
   for (std::size_t i = 0; i < wave.paths.size(); ++i) {
     const Path& path = wave.paths[i];

@@ -25,8 +25,9 @@ class PathWaves {
             std::uint64_t seed, const Sites& sites);
 
   [[nodiscard]] const Aimer& aimer() const { return aimer_; }
-  /// Lights the sites of a block: radiance and variance of `samples`.
-  void light(const SiteBlock& block, SampleSet& samples, TraceCounters& counters) const;
+  /// Lights the sites of a block: radiance and variance of `samples`. Those of `lamps`, if there are any, get what
+  /// comes straight from the light sources alone.
+  void light(const SiteBlock& block, SampleSet& samples, SampleSet* lamps, TraceCounters& counters) const;
 
  private:
   /// What all vertices of a site's paths share: they lie on one level set.

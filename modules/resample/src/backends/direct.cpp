@@ -61,6 +61,10 @@ class Direct final : public Resampler {
     place(volume, samples, texels, run);
   }
 
+  [[nodiscard]] LampLight lamps() const override {
+    return options_.denoise ? LampLight::kToldApart : LampLight::kWithin;
+  }
+
   void add_detail(const Volume& volume, const SampleSet& samples, ResampledGrid& texels,
                   const Run& run) const override {
     if (!options_.near_field) return;

@@ -3,6 +3,7 @@
 #include <isolux/core/vec.h>
 
 #include <cstddef>
+#include <cstdint>
 #include <vector>
 
 namespace isolux {
@@ -16,12 +17,22 @@ struct Sites {
   [[nodiscard]] std::size_t size() const { return positions.size(); }
 };
 
+/// Whether samples say which part of their light is lamps': what light sources, and parts of an image as bright as
+/// these, send straight to a site. Rays are aimed at them, so it is hardly noisy, and has edges that the rest has not.
+enum class LampLight : std::uint8_t {
+  kWithin,    ///< it is a part of the whole like any other
+  kToldApart  ///< SampleSet::lamps says it too, where there are lamps
+};
+
 /// Sites and the light found at them: e = irradiance/pi of the outer side (a radiance), see docs/theory.md.
 struct SampleSet {
   Sites sites;
   int channels = 1;             ///< 1 (grey) or 3 (RGB)
   std::vector<float> radiance;  ///< e; `channels` values a site, channel fastest
   std::vector<float> variance;  ///< squared standard error of e, mean over the channels; one a site
+  /// What of `radiance` and of `variance` is lamps' (LampLight), in the same layout; empty where it is not told apart.
+  std::vector<float> lamps{};
+  std::vector<float> lamps_variance{};
 
   [[nodiscard]] std::size_t size() const { return sites.size(); }
 };

@@ -24,6 +24,7 @@ struct TraceSettings {
   int bounces = kAllBounces;  ///< reflections; 0: a hit is black unless it emits
   GradientKind gradient = GradientKind::kCentralDifferences;
   RayNets nets = RayNets::kIndependent;  ///< of the first rays; `scalar` keeps them independent
+  LampLight lamps = LampLight::kWithin;  ///< told apart, the whole is the same to the bit; `scalar` leaves it within
 };
 
 struct TraceResult {

@@ -54,6 +54,7 @@ struct SolveSettings {
   /// All bounces: iterate over one of so many ends of each site, in turn along its net's strata; the last reflection
   /// reads all. The noise that this leaves is that of the mean over the ends of what they reflect.
   std::size_t ends_one_of = 1;
+  LampLight lamps = LampLight::kWithin;  ///< of the solution's samples
 };
 
 struct Solution {

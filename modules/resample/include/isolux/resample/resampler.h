@@ -34,6 +34,9 @@ class Resampler {
   [[nodiscard]] virtual ResampledGrid resample(const Volume& volume, const SampleSet& samples, const Lattice& texels,
                                                const Run& run) const = 0;
 
+  /// Whether resample() makes something of lamps' light told apart.
+  [[nodiscard]] virtual LampLight lamps() const { return LampLight::kWithin; }
+
   /// Whether samples can be put into a grid part by part: what a sample gives to which texel depends on no other one.
   [[nodiscard]] virtual bool takes_parts() const { return false; }
   /// Puts more samples into `texels`, which begins as unlit_grid() of their channels; no two parts have samples for one
