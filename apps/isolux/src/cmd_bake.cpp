@@ -9,6 +9,7 @@
 #include "bake_options.h"
 #include "commands.h"
 #include "parse.h"
+#include "usage.h"
 #include "volume_options.h"
 
 namespace isolux {
@@ -120,6 +121,8 @@ void choose_size(const Options& options, const Volume& volume, const Scene& scen
 
 void run_bake(const Options& options, Session& session) {
   BakeSettings settings = bake_settings(options, session.stages);
+  session.require_outputs({{"--output", options.output}, {"--error-grid", options.error_grid}},
+                          {{"VOLUME", options.volume.source()}, {"--scene", options.trace.scene_path()}});
   const Volume volume = options.volume.read(session);
   const Scene scene = session.timed("read", [&] { return options.trace.scene(); });
   if (options.texels == kChosen) choose_size(options, volume, scene, settings, session);
@@ -169,7 +172,7 @@ void add_bake_command(CLI::App& program, Session& session) {
           "--texels-a-cell", options->texels_a_cell,
           "texels a cell on each axis, 1.5 too (default 1; with --resampler fit 1.7 for one isovalue, 1.15 for a "
           "range): 1.58 with the fit is the best light")
-      ->check(CLI::Range(0.125, 8.0))
+      ->check(number_within(0.125, 8.0))
       ->type_name("N");
   command.add_option("--lattice", options->lattice, "texels at the cell centres (default) or at the voxels")
       ->check(CLI::IsMember({"cells", "voxels"}));
@@ -182,7 +185,7 @@ void add_bake_command(CLI::App& program, Session& session) {
   command
       .add_option("--rmse", options->rmse,
                   "error wanted: spends rays where they take away most error until it is reached")
-      ->check(CLI::PositiveNumber)
+      ->check(above_zero())
       ->type_name("TARGET");
   command
       .add_option("--sites", options->sites,
@@ -190,7 +193,7 @@ void add_bake_command(CLI::App& program, Session& session) {
                   "(--resampler fit) half where the others say that light changes")
       ->check(CLI::IsMember({"all", "need"}));
   command.add_option("--time", options->time, "seconds to spend on rays and bounces; with --rmse: at most")
-      ->check(CLI::PositiveNumber)
+      ->check(above_zero())
       ->type_name("SECONDS");
   command.add_option("--error-grid", options->error_grid, "write the estimated standard error at each texel")
       ->type_name("FILE.nrrd");
@@ -202,6 +205,7 @@ void add_bake_command(CLI::App& program, Session& session) {
   command
       .add_option("--set", options->set,
                   "an option of a backend: sampler.KEY=VALUE, tracer.KEY=VALUE or resampler.KEY=VALUE")
+      ->check(key_and_value())
       ->type_name("stage.key=value");
   command.add_flag("--compress", options->compress,
                    "gzip the light (--iso-range with --resampler fit leaves most of it empty)");
