@@ -22,6 +22,8 @@ class BadCommandLine(CommandLineTest):
             (("bake", "gen:sphere:8", "-o", "l.nrrd", "--texels", "4x4"), "NXxNYxNZ"),
             (("bake", "gen:sphere:8", "-o", "l.nrrd", "--texels", "4x0x4"), "4x0x4"),
             (("bake", "gen:sphere:8", "-o", "l.nrrd", "--texels", "aut"), "auto"),
+            (("bake", "gen:sphere:8", "-o", "l.nrrd", "--texels", "4x4x4", "--texels-a-cell", "2"), "--texels excludes"),
+            (("bake", "gen:sphere:8", "-o", "l.nrrd", "--error-grid", "e.nrrd", "--rays", "1"), "--error-grid"),
             (("bake", "gen:sphere:8", "-o", "l.nrrd", "--sites", "need"), "--rmse"),
             (("bake", "gen:sphere:8", "-o", "l.nrrd", "--iso-range", "5:1"), "5:1"),
             (("bake", "gen:sphere:8", "-o", "l.nrrd", "--iso-range", "nan:1"), "nan"),

@@ -85,6 +85,8 @@ class Bake(CommandLineTest):
 
     def test_more_threads_than_cores_are_no_matter(self):
         self.assertEqual(self.bake("--threads", 64).stderr, "")
+        # Starting all of them for each of hundreds of small loops would take minutes; the test's limit is 300 s.
+        self.assertEqual(self.bake("--threads", 4096, volume="gen:gyroid:12", rays=2).stderr, "")
 
     def test_texels_lattice_and_compression(self):
         self.bake("--texels", "5x6x7")

@@ -57,6 +57,8 @@ BakeSettings bake_settings(const Options& options, const Stages& stages) {
   const bool scattered = options.resampler == "fit" || options.samples > 0;
   if (options.sites == "need" && !scattered && options.rmse <= 0.0)
     throw UsageError("--sites need: allowed with --rmse alone, or with scattered sites (--resampler fit, --samples)");
+  if (!options.error_grid.empty() && settings.trace.rays < 2 && options.rmse <= 0.0 && options.time <= 0.0)
+    throw UsageError("--error-grid: one ray a site tells nothing about its error; allowed is --rays 2 and more");
   settings.texel_sites = options.sites == "need" ? TexelSites::kNeeded : TexelSites::kAll;
   settings.target_rmse = options.rmse;
   settings.target_seconds = options.time;
@@ -132,11 +134,12 @@ void run_bake(const Options& options, Session& session) {
   report_bake(result, session);
   say_of_memory(result, session);
   session.report["rays_per_second"] = double(result.counters.rays) / trace_seconds;
+  const bool known = !std::isnan(result.rmse_estimate);
   session.say(fmt::format(
-      "{} texels{} from {} sites, {:.1f} million rays in {:.1f} s ({:.2f} million a second), error about {:.4f}",
+      "{} texels{} from {} sites, {:.1f} million rays in {:.1f} s ({:.2f} million a second), error {}",
       result.light.lattice.count(), result.sides.empty() ? "" : " of both sides", result.sites,
       double(result.counters.rays) * 1e-6, trace_seconds, double(result.counters.rays) * 1e-6 / trace_seconds,
-      result.rmse_estimate));
+      known ? fmt::format("about {:.4f}", result.rmse_estimate) : "unknown: one ray a site tells nothing about it"));
   session.timed("write", [&] {
     if (!options.error_grid.empty()) {
       write_light(make_error_file(result, volume, scene, settings, session.run), options.error_grid, volume.space,
@@ -167,12 +170,14 @@ void add_bake_command(CLI::App& program, Session& session) {
                   "than --rmse "
                   "(default .05) between them")
       ->type_name("NXxNYxNZ|auto");
+  CLI::Option* texels = command.get_option("--texels");
   command
       .add_option(
           "--texels-a-cell", options->texels_a_cell,
           "texels a cell on each axis, 1.5 too (default 1; with --resampler fit 1.7 for one isovalue, 1.15 for a "
           "range): 1.58 with the fit is the best light")
       ->check(number_within(0.125, 8.0))
+      ->excludes(texels)
       ->type_name("N");
   command.add_option("--lattice", options->lattice, "texels at the cell centres (default) or at the voxels")
       ->check(CLI::IsMember({"cells", "voxels"}));
