@@ -182,6 +182,14 @@ class BadScene(CommandLineTest):
         for pixels in (0, 1, 8, 15):
             self.write("sky.hdr", header + bytes([128, 128, 128, 129]) * pixels)
             self.fail(1, "bake", "gen:sphere:8", "-o", "light.nrrd", "--scene", "scene.json", says=("sky.hdr", "ends early"))
+        # Runs: a scanline of 16 pixels is 2 2 0 16 and for each of four channels a run or a dump.
+        header = b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 2 +X 16\n"
+        line = bytes([2, 2, 0, 16] + [128 + 16, 128] * 3 + [16] + [129] * 16)
+        self.write("sky.hdr", header + 2 * line)
+        self.succeed("bake", "gen:sphere:8", "-o", "whole.nrrd", "--scene", "scene.json", "--rays", 1, "--quiet")
+        for size in range(len(line), 2 * len(line)):
+            self.write("sky.hdr", header + (2 * line)[:size])
+            self.fail(1, "bake", "gen:sphere:8", "-o", "light.nrrd", "--scene", "scene.json", says=("sky.hdr", "ends early"))
 
 
 class BadOutput(CommandLineTest):

@@ -42,10 +42,11 @@ ImageEnvironment read_exr(const std::string& path) {
 }
 
 /// A file for stb that notes when more is asked than there is: of a Radiance HDR that ends early stb makes the rest
-/// black and says nothing.
+/// black and says nothing, or waits for ever for a run that is not empty.
 class StbFile {
  public:
-  explicit StbFile(const std::string& path) : file_(path, std::ios::binary) {}
+  /// `beyond`: the byte that stands for all those behind the end, if any; -1 ends the file as usual.
+  StbFile(const std::string& path, int beyond) : file_(path, std::ios::binary), beyond_(beyond) {}
 
   [[nodiscard]] bool ended_early() const { return ended_early_; }
   static const stbi_io_callbacks& callbacks() {
@@ -60,8 +61,11 @@ class StbFile {
   int read(char* into, int count) {
     file_.read(into, count);
     const auto got = int(file_.gcount());
-    ended_early_ = ended_early_ || got == 0;
-    return got;
+    if (got > 0) return got;
+    ended_early_ = true;
+    if (beyond_ < 0) return 0;
+    std::fill_n(into, count, char(beyond_));
+    return count;
   }
   void skip(int count) {
     file_.clear();
@@ -70,6 +74,7 @@ class StbFile {
   bool at_end() { return file_.peek() == std::ifstream::traits_type::eof(); }
 
   std::ifstream file_;
+  int beyond_;
   bool ended_early_ = false;
 };
 
@@ -80,16 +85,19 @@ ImageEnvironment read_with_stb(const std::string& path) {
   };
   ImageEnvironment image;
   int channels = 0;
-  const auto missing = [&] {
-    return IoError(fmt::format("{}: cannot read the image: {}", path, stbi_failure_reason()));
+  const bool hdr = stbi_is_hdr(path.c_str()) != 0;
+  StbFile file(path, hdr ? 0xFF : -1);  // a run of 127 equal values, which no scanline waits for twice
+  const auto require = [&](bool read) {
+    if (!read)
+      throw IoError(fmt::format("{}: cannot read the image: {}{}", path, stbi_failure_reason(),
+                                file.ended_early() ? " (the image ends early)" : ""));
+    if (file.ended_early()) throw IoError(fmt::format("{}: the image ends early", path));
   };
-  StbFile file(path);
-  if (stbi_is_hdr(path.c_str()) != 0) {
+  if (hdr) {
     const std::unique_ptr<float, void (*)(void*)> data(
         stbi_loadf_from_callbacks(&StbFile::callbacks(), &file, &image.width, &image.height, &channels, 3),
         stbi_image_free);
-    if (data == nullptr) throw missing();
-    if (file.ended_early()) throw IoError(fmt::format("{}: the image ends early", path));
+    require(data != nullptr);
     const float* p = data.get();
     for (std::ptrdiff_t i = 0; i < std::ptrdiff_t(image.width) * image.height; ++i, p += 3)
       image.pixels.emplace_back(p[0], p[1], p[2]);
@@ -98,8 +106,7 @@ ImageEnvironment read_with_stb(const std::string& path) {
   const std::unique_ptr<stbi_us, void (*)(void*)> data(
       stbi_load_16_from_callbacks(&StbFile::callbacks(), &file, &image.width, &image.height, &channels, 3),
       stbi_image_free);
-  if (data == nullptr) throw missing();
-  if (file.ended_early()) throw IoError(fmt::format("{}: the image ends early", path));
+  require(data != nullptr);
   const stbi_us* p = data.get();
   for (std::ptrdiff_t i = 0; i < std::ptrdiff_t(image.width) * image.height; ++i, p += 3) {
     image.pixels.emplace_back(srgb_to_linear(float(p[0]) / 65535.0f), srgb_to_linear(float(p[1]) / 65535.0f),
