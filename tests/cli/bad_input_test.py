@@ -22,6 +22,8 @@ class BadCommandLine(CommandLineTest):
             (("bake", "gen:sphere:8", "-o", "l.nrrd", "--texels", "4x4"), "NXxNYxNZ"),
             (("bake", "gen:sphere:8", "-o", "l.nrrd", "--texels", "4x0x4"), "4x0x4"),
             (("bake", "gen:sphere:8", "-o", "l.nrrd", "--texels", "aut"), "auto"),
+            (("bake", "gen:sphere:8", "-o", "l.nrrd", "--texels", "4x4x4", "--texels-a-cell", "2"), "--texels excludes"),
+            (("bake", "gen:sphere:8", "-o", "l.nrrd", "--error-grid", "e.nrrd", "--rays", "1"), "--error-grid"),
             (("bake", "gen:sphere:8", "-o", "l.nrrd", "--sites", "need"), "--rmse"),
             (("bake", "gen:sphere:8", "-o", "l.nrrd", "--iso-range", "5:1"), "5:1"),
             (("bake", "gen:sphere:8", "-o", "l.nrrd", "--iso-range", "nan:1"), "nan"),
@@ -53,6 +55,24 @@ class BadCommandLine(CommandLineTest):
             (("render", "gen:sphere:8", "-o", "i.png", "--iso", "-.3", "--side", "both"), "--side"),
             (("render", "gen:sphere:8", "-o", "i.png", "--iso", "-.3", "--eye", "1,2"), "--eye"),
             (("probe", "gen:sphere:8", "-o", "o.csv", "--points", "p.csv"), "--light"),
+            (("bake", "gen:sphere:8", "-o", "l.nrrd", "--rmse", "nan"), "a number above 0"),
+            (("bake", "gen:sphere:8", "-o", "l.nrrd", "--time", "nan"), "a number above 0"),
+            (("bake", "gen:sphere:8", "-o", "l.nrrd", "--texels-a-cell", "nan"), "a number from 0.125 to 8"),
+            (("bake", "gen:sphere:8", "-o", "l.nrrd", "--seed", "-1"), "--seed: '-1'"),
+            (("bake", "gen:sphere:8", "-o", "l.nrrd", "--seed", "99999999999999999999"), "whole number"),
+            (("bake", "gen:sphere:8", "-o", "l.nrrd", "--iso-range", "0:1e300"), "--iso-range"),
+            # What a script's unset variable leaves is not a default.
+            (("bake", "gen:sphere:8", "-o", "l.nrrd", "--scene", ""), "--scene"),
+            (("bake", "gen:sphere:8", "-o", "l.nrrd", "--iso-range", ""), "--iso-range"),
+            (("bake", "gen:sphere:8", "-o", ""), "--output"),
+            (("bake", "", "-o", "l.nrrd"), "VOLUME"),
+            (("render", "gen:sphere:8", "-o", "i.png", "--iso", "-.3", "--exposure", "nan"), "--exposure"),
+            (("render", "gen:sphere:8", "-o", "i.jpg", "--iso", "-.3"), "i.jpg: pictures are written as .png"),
+            (("render", "gen:sphere:8", "-o", "i.png", "--iso", "-.3", "--size", "30000x30000"), "--size"),
+            (("render", "gen:sphere:8", "-o", "i.png", "--iso", "-.3", "--size", "2147483647x2147483647"), "--size"),
+            (("convert", "gen:sphere:8", "v.nrrd", "--replace-nonfinite", "none"), "--replace-nonfinite"),
+            (("extract", "--iso", "-.3", "--set", "k=1", "gen:sphere:8", "-o", "m.ply"), "--set: 'gen:sphere:8'"),
+            (("extract", "gen:sphere:8", "-o", "m.ply", "--isso", "-.3"), "did you mean --iso"),
         ]
         for arguments, said in cases:
             with self.subTest(arguments=arguments):
@@ -141,6 +161,10 @@ class BadScene(CommandLineTest):
             ('{"lights": [{"type": "sun", "direction": [0, 0, 1], "irradiance": [1, 1, 1], "angular_diameter_deg": 120}]}',
              "at most 90"),
             ('{"outer": "inner"}', "lower, higher"),
+            ("", "empty"),
+            ('{"albedo": [1e999, 0, 0]}', "too large"),
+            ('{"lights": [{"type": "rectangle", "center": [0, 0, 2], "u": [1, 0, 0], "v": [2, 0, 0], "radiance": [1, 1, 1]}]}',
+             "lights[0]: u and v are parallel"),
         ]
         for text, said in cases:
             with self.subTest(scene=text):
@@ -149,6 +173,23 @@ class BadScene(CommandLineTest):
         self.fail(1, "bake", "gen:sphere:8", "-o", "light.nrrd", "--scene", "gone.json", says="gone.json")
         self.write("scene.json", '{"environment": {"type": "image", "file": "gone.hdr"}}')
         self.fail(1, "bake", "gen:sphere:8", "-o", "light.nrrd", "--scene", "scene.json", says="gone.hdr")
+
+    def test_a_picture_that_ends_early_is_not_half_black(self):
+        self.write("scene.json", '{"environment": {"type": "image", "file": "sky.hdr"}}')
+        header = b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 4 +X 4\n"
+        self.write("sky.hdr", header + bytes([128, 128, 128, 129]) * 16)
+        self.succeed("bake", "gen:sphere:8", "-o", "whole.nrrd", "--scene", "scene.json", "--rays", 1, "--quiet")
+        for pixels in (0, 1, 8, 15):
+            self.write("sky.hdr", header + bytes([128, 128, 128, 129]) * pixels)
+            self.fail(1, "bake", "gen:sphere:8", "-o", "light.nrrd", "--scene", "scene.json", says=("sky.hdr", "ends early"))
+        # Runs: a scanline of 16 pixels is 2 2 0 16 and for each of four channels a run or a dump.
+        header = b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 2 +X 16\n"
+        line = bytes([2, 2, 0, 16] + [128 + 16, 128] * 3 + [16] + [129] * 16)
+        self.write("sky.hdr", header + 2 * line)
+        self.succeed("bake", "gen:sphere:8", "-o", "whole.nrrd", "--scene", "scene.json", "--rays", 1, "--quiet")
+        for size in range(len(line), 2 * len(line)):
+            self.write("sky.hdr", header + (2 * line)[:size])
+            self.fail(1, "bake", "gen:sphere:8", "-o", "light.nrrd", "--scene", "scene.json", says=("sky.hdr", "ends early"))
 
 
 class BadOutput(CommandLineTest):
@@ -173,11 +214,20 @@ class BadLight(CommandLineTest):
         self.fail(1, "probe", "gen:sphere:8", "--light", "light.nrrd", "--points", "points.csv", "-o", "o.csv",
                   says=("light.nrrd", "isolux.volume_sha256"))
 
+    def test_of_errors_is_no_light(self):
+        self.succeed("bake", "gen:sphere:8", "-o", "light.nrrd", "--error-grid", "error.nrrd", "--rays", 2, "--quiet")
+        self.fail(1, "extract", "gen:sphere:8", "--light", "error.nrrd", "--iso", -0.3, "-o", "mesh.ply",
+                  says=("error.nrrd", "standard error", "--force"))
+
     def test_bad_points_are_named_by_line(self):
         self.succeed("bake", "gen:sphere:8", "-o", "light.nrrd", "--rays", 1, "--quiet")
         self.write("points.csv", "x,y,z\n0.5,0.5,0.8\n0.5,half,0.8\n")
         self.fail(1, "probe", "gen:sphere:8", "--light", "light.nrrd", "--points", "points.csv", "-o", "o.csv",
                   says=("points.csv", "line 3", "half"))
+        for line in ("0.5,0.5", "0.5,,0.5,0.5", "0,5;0,5;0,7"):  # too few, one empty, commas for points
+            self.write("points.csv", line + "\n")
+            self.fail(1, "probe", "gen:sphere:8", "--light", "light.nrrd", "--points", "points.csv", "-o", "o.csv",
+                      says=("points.csv", "line 1", line))
 
 
 if __name__ == "__main__":

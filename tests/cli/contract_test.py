@@ -2,6 +2,7 @@
 import json
 import math
 import os
+import re
 import signal
 import struct
 import subprocess
@@ -84,6 +85,8 @@ class Bake(CommandLineTest):
 
     def test_more_threads_than_cores_are_no_matter(self):
         self.assertEqual(self.bake("--threads", 64).stderr, "")
+        # Starting all of them for each of hundreds of small loops would take minutes; the test's limit is 300 s.
+        self.assertEqual(self.bake("--threads", 4096, volume="gen:gyroid:12", rays=2).stderr, "")
 
     def test_texels_lattice_and_compression(self):
         self.bake("--texels", "5x6x7")
@@ -133,6 +136,19 @@ class Bake(CommandLineTest):
             self.assertAlmostEqual(values[3], isovalue, delta=0.01)  # trilinear f of 16^3
             self.assertAlmostEqual(values[4], 1.0, delta=1e-5)       # no ray of a convex level set meets it again
         self.assertTrue(rows[3].endswith("nan,nan"))
+
+    def test_probe_reads_the_tables_that_others_write(self):
+        self.bake("--bounces", 0)
+        tables = {"plain": "0.5,0.5,0.8\n", "byte order mark": "\ufeff0.5,0.5,0.8\n", "signs": "+.5,+5e-1,.8\n",
+                  "blanks": "  0.5\t0.5 0.8 \r\n", "semicolons": "0.5;0.5;0.8\r\n", "comment": "# mine\n\n0.5, 0.5, 0.8, 7\n",
+                  "names": "\ufeffid,Z,Y,X\n1,0.8,0.5,0.5\n", "quotes": '"x","y","z"\n"0.5","0.5","0.8"\n',
+                  "other names": "easting northing height\n0.5 0.5 0.8\n"}
+        for name, table in tables.items():
+            with self.subTest(table=name):
+                self.write("points.csv", table)
+                self.succeed("probe", "gen:sphere:16", "--light", "light.nrrd", "--points", "points.csv", "-o", "out.csv")
+                rows = self.read("out.csv").decode().splitlines()[1:]
+                self.assertEqual([row.split(",")[:3] for row in rows], [["0.5", "0.5", "0.8"]])
 
     def test_sigint_stops_cleanly(self):
         process = subprocess.Popen([ISOLUX, "bake", "gen:gyroid:64", "-o", "light.nrrd", "--rays", "4096"], cwd=self.folder,
@@ -186,6 +202,14 @@ class Extract(CommandLineTest):
         done = self.succeed("extract", "gen:sphere:8", "--iso", 5, "-o", "mesh.ply")
         self.assertIn("isolux: warning: isovalue 5 lies outside", done.stderr)
         self.assertEqual(len(ply(self.path("mesh.ply"))[1]), 0)
+        # All of the box is inside: its cap is a surface.
+        done = self.succeed("extract", "gen:sphere:8", "--iso", -5, "-o", "mesh.ply", "--cap", "--quiet")
+        self.assertEqual(done.stderr, "")
+        self.assertGreater(len(ply(self.path("mesh.ply"))[1]), 0)
+
+    def test_options_of_tracing_without_exact_light_are_told(self):
+        done = self.succeed("extract", "gen:sphere:8", "--iso", -0.3, "-o", "mesh.ply", "--rays", 4)
+        self.assertIn("isolux: warning: --bounces, --rays and --tracer have no effect without --exact-light", done.stderr)
 
 
 class Render(CommandLineTest):
@@ -208,6 +232,16 @@ class Convert(CommandLineTest):
         one, two = (json.loads(self.succeed("info", f, "--json").stdout) for f in ("a.nrrd", "b.nhdr"))
         self.assertEqual(one["sha256"], two["sha256"])
 
+    def test_replaces_what_is_not_finite(self):
+        self.write("bad_2x2x2_float32.raw", struct.pack("<8f", 1, 2, 3, math.nan, 5, 6, math.inf, 8))
+        self.succeed("convert", "bad_2x2x2_float32.raw", "good_2x2x2_float32.raw", "--replace-nonfinite", "-7")
+        self.assertEqual(struct.unpack("<8f", self.read("good_2x2x2_float32.raw")), (1, 2, 3, -7, 5, 6, -7, 8))
+
+    def test_reads_big_endian_files_whose_name_says_the_rest(self):
+        self.write("big_2x2x2_uint16.raw", struct.pack(">8H", *range(8)))
+        self.succeed("convert", "big_2x2x2_uint16.raw", "little_2x2x2_uint16.raw", "--endian", "big")
+        self.assertEqual(struct.unpack("<8H", self.read("little_2x2x2_uint16.raw")), tuple(range(8)))
+
 
 class Program(CommandLineTest):
     def test_version_and_help(self):
@@ -215,6 +249,14 @@ class Program(CommandLineTest):
         for command in ("info", "backends", "extract", "bake", "render", "probe", "convert"):
             self.assertIn(command, self.succeed("--help").stdout)
             self.assertIn("--", self.succeed(command, "--help").stdout)
+            self.assertEqual(self.succeed(command, "--version").stdout, self.succeed("--version").stdout)
+
+    def test_documentation_names_every_option(self):
+        with open(os.path.join(os.path.dirname(os.path.abspath(__file__)), "../../docs/command-line.md")) as file:
+            page = file.read()
+        for command in ("info", "backends", "extract", "bake", "render", "probe", "convert"):
+            for option in re.findall(r"^ +(?:-\w,)?(--[a-z-]+)", self.succeed(command, "--help").stdout, re.MULTILINE):
+                self.assertRegex(page, option + r"\b", command)
 
     def test_links_no_gl(self):
         linked = subprocess.run(["ldd", ISOLUX], capture_output=True, text=True, check=True).stdout.lower()

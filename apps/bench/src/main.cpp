@@ -1,13 +1,13 @@
 #include <fmt/format.h>
 #include <isolux/core/error.h>
 #include <isolux/core/stopwatch.h>
+#include <isolux/volume_io/atomic_file.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <csignal>
-#include <cstdio>
 #include <cstdlib>
 #include <exception>
+#include <filesystem>
 #include <fstream>
 #include <string>
 #include <utility>
@@ -15,7 +15,10 @@
 
 #include "faults.h"
 #include "report.h"
+#include "session.h"
 #include "suite.h"
+#include "terminal.h"
+#include "usage.h"
 
 namespace {
 
@@ -27,12 +30,10 @@ struct Arguments {
   std::string folder = "bench";
   Effort effort = Effort::kQuick;
   std::string fault;
-  int threads = 0;
-  std::uint64_t seed = 1;
 };
 
-/// Exit status of a finished parse, or -1 to go on.
-int parse(int argc, char** argv, Arguments& arguments) {
+/// Exit status of a finished parse, or -1 to go on. \throw UsageError
+int parse(int argc, char** argv, Arguments& arguments, Session& session) {
   CLI::App app{"Run time against error of every stage; writes JSON, CSV, pictures and report.md", "isolux bench"};
   std::vector<std::string> known;
   std::string footer = "Suites (default: all):\n";
@@ -52,27 +53,35 @@ int parse(int argc, char** argv, Arguments& arguments) {
   app.add_option("--inject", arguments.fault,
                  "judge a tracer that is wrong or slow on purpose, as if it were the default")
       ->check(CLI::IsMember(ills));
-  app.add_option("--threads", arguments.threads, "threads, 0 for all")->check(CLI::Range(0, 4096));
-  app.add_option("--seed", arguments.seed, "seed of every random number")->capture_default_str();
+  session.add_common_options(app);
+  app.remove_option(app.get_option("--threads"));  // here 0 is a number too
+  app.add_option("--threads", session.run.threads, "threads, 0 for all")->check(CLI::Range(0, 4096))->type_name("T");
   try {
     app.parse(argc, argv);
-  } catch (const CLI::CallForHelp&) {
-    fmt::print("{}", app.help());
-    return 0;
+  } catch (const CLI::Success& help) {
+    return app.exit(help);
   } catch (const CLI::ParseError& error) {
-    fmt::print(stderr, "isolux: error: {}\n", error.what());
-    return 2;
+    throw UsageError(explain(error, app));
   }
   return -1;
 }
 
+/// Made before the first suite, so that no minutes are lost to a folder that cannot be. \throw IoError
+void make_folder(const std::string& folder) {
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (error) throw IoError(fmt::format("{}: cannot be made a folder: {}", folder, error.message()));
+  require_writable((std::filesystem::path(folder) / "report.md").string());
+}
+
 /// 1 if a claim of a suite did not hold.
-int run_suites(const Arguments& arguments) {
+int run_suites(const Arguments& arguments, Session& session) {
+  make_folder(arguments.folder);
   SuiteContext context{.effort = arguments.effort,
-                       .run = {.seed = arguments.seed, .threads = arguments.threads},
+                       .run = {.seed = session.run.seed, .threads = session.run.threads},
                        .stages = builtin_stages(),
                        .data_folder = {},
-                       .say = [](std::string_view text) { fmt::print(stderr, "    {}\n", text); }};
+                       .say = [&session](std::string_view text) { session.say(fmt::format("    {}", text)); }};
   if (const char* folder = std::getenv("ISOLUX_DATA"); folder != nullptr) context.data_folder = folder;
   if (!arguments.fault.empty()) context.stages = with_fault(std::move(context.stages), arguments.fault);
   std::ifstream("/proc/loadavg") >> context.load_before;
@@ -80,14 +89,15 @@ int run_suites(const Arguments& arguments) {
   for (const Suite& suite : suites()) {
     const auto& names = arguments.names;
     if (!names.empty() && std::find(names.begin(), names.end(), suite.name) == names.end()) continue;
-    fmt::print(stderr, "{}: {}\n", suite.name, suite.help);
+    session.say(fmt::format("{}: {}", suite.name, suite.help));
     context.budget = budget_of(suite, context.effort);
     const Stopwatch watch;
     const SuiteReport report = suite.run(context);
     write_suite(arguments.folder, suite, report, context, watch.seconds());
-    fmt::print(stderr, "    {:.1f} s\n", watch.seconds());
+    session.add_seconds(std::string(suite.name), watch.seconds());
+    session.say(fmt::format("    {:.1f} s", watch.seconds()));
     for (const std::string& failure : report.failures) {
-      fmt::print(stderr, "isolux: error: {}: {}\n", suite.name, failure);
+      complain(std::string(suite.name), failure);
       status = 1;
     }
   }
@@ -99,12 +109,21 @@ int run_suites(const Arguments& arguments) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  open_standard_streams();
   try {
     Arguments arguments;
-    const int status = parse(argc, argv, arguments);
-    return status >= 0 ? status : run_suites(arguments);
+    Session session;
+    int status = parse(argc, argv, arguments, session);
+    if (status >= 0) return status;
+    session.on_run([&] { status = run_suites(arguments, session); });
+    session.run_action();
+    flush_output();
+    return status;
+  } catch (const UsageError& error) {
+    complain("bench", error.what());
+    return 2;
   } catch (const std::exception& error) {
-    fmt::print(stderr, "isolux: error: bench: {}\n", error.what());
+    complain("bench", error.what());
     return 1;
   }
 }

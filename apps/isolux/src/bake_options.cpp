@@ -3,10 +3,8 @@
 #include <fmt/format.h>
 #include <isolux/bake/scene_file.h>
 
-#include <cmath>
-#include <cstdlib>
-
 #include "parse.h"
+#include "usage.h"
 
 namespace isolux {
 namespace {
@@ -43,10 +41,7 @@ TraceSettings TraceOptions::settings() const {
 }
 
 void add_isovalue(CLI::App& command, float& isovalue) {
-  command.add_option("--iso", isovalue, "isovalue")->required()->type_name("H")->check([](const std::string& text) {
-    // What is no number at all is refused when it is converted.
-    return std::isfinite(std::strtof(text.c_str(), nullptr)) ? std::string() : text + " is not a finite number";
-  });
+  command.add_option("--iso", isovalue, "isovalue")->required()->type_name("H")->check(finite_number());
 }
 
 void warn_outside_range(const Volume& volume, float isovalue, const Session& session) {

@@ -17,8 +17,11 @@ class TraceOptions {
   void add_to(CLI::App& command);
   /// \throw UsageError, IoError, InvalidInput
   [[nodiscard]] Scene scene() const;
+  [[nodiscard]] const std::string& scene_path() const { return scene_; }
   [[nodiscard]] bool scene_given() const { return !scene_.empty(); }
   [[nodiscard]] bool bounces_given() const { return !bounces_.empty(); }
+  /// Whether --bounces, --rays or --tracer were given.
+  [[nodiscard]] bool says_how_to_trace() const { return bounces_given() || rays_ > 0 || !tracer_.empty(); }
   [[nodiscard]] TraceSettings settings() const;
   [[nodiscard]] const std::string& tracer() const { return tracer_; }
 

@@ -9,6 +9,7 @@
 #include "bake_options.h"
 #include "commands.h"
 #include "parse.h"
+#include "usage.h"
 #include "volume_options.h"
 
 namespace isolux {
@@ -56,6 +57,8 @@ BakeSettings bake_settings(const Options& options, const Stages& stages) {
   const bool scattered = options.resampler == "fit" || options.samples > 0;
   if (options.sites == "need" && !scattered && options.rmse <= 0.0)
     throw UsageError("--sites need: allowed with --rmse alone, or with scattered sites (--resampler fit, --samples)");
+  if (!options.error_grid.empty() && settings.trace.rays < 2 && options.rmse <= 0.0 && options.time <= 0.0)
+    throw UsageError("--error-grid: one ray a site tells nothing about its error; allowed is --rays 2 and more");
   settings.texel_sites = options.sites == "need" ? TexelSites::kNeeded : TexelSites::kAll;
   settings.target_rmse = options.rmse;
   settings.target_seconds = options.time;
@@ -120,6 +123,8 @@ void choose_size(const Options& options, const Volume& volume, const Scene& scen
 
 void run_bake(const Options& options, Session& session) {
   BakeSettings settings = bake_settings(options, session.stages);
+  session.require_outputs({{"--output", options.output}, {"--error-grid", options.error_grid}},
+                          {{"VOLUME", options.volume.source()}, {"--scene", options.trace.scene_path()}});
   const Volume volume = options.volume.read(session);
   const Scene scene = session.timed("read", [&] { return options.trace.scene(); });
   if (options.texels == kChosen) choose_size(options, volume, scene, settings, session);
@@ -129,11 +134,12 @@ void run_bake(const Options& options, Session& session) {
   report_bake(result, session);
   say_of_memory(result, session);
   session.report["rays_per_second"] = double(result.counters.rays) / trace_seconds;
+  const bool known = !std::isnan(result.rmse_estimate);
   session.say(fmt::format(
-      "{} texels{} from {} sites, {:.1f} million rays in {:.1f} s ({:.2f} million a second), error about {:.4f}",
+      "{} texels{} from {} sites, {:.1f} million rays in {:.1f} s ({:.2f} million a second), error {}",
       result.light.lattice.count(), result.sides.empty() ? "" : " of both sides", result.sites,
       double(result.counters.rays) * 1e-6, trace_seconds, double(result.counters.rays) * 1e-6 / trace_seconds,
-      result.rmse_estimate));
+      known ? fmt::format("about {:.4f}", result.rmse_estimate) : "unknown: one ray a site tells nothing about it"));
   session.timed("write", [&] {
     if (!options.error_grid.empty()) {
       write_light(make_error_file(result, volume, scene, settings, session.run), options.error_grid, volume.space,
@@ -164,12 +170,14 @@ void add_bake_command(CLI::App& program, Session& session) {
                   "than --rmse "
                   "(default .05) between them")
       ->type_name("NXxNYxNZ|auto");
+  CLI::Option* texels = command.get_option("--texels");
   command
       .add_option(
           "--texels-a-cell", options->texels_a_cell,
           "texels a cell on each axis, 1.5 too (default 1; with --resampler fit 1.7 for one isovalue, 1.15 for a "
           "range): 1.58 with the fit is the best light")
-      ->check(CLI::Range(0.125, 8.0))
+      ->check(number_within(0.125, 8.0))
+      ->excludes(texels)
       ->type_name("N");
   command.add_option("--lattice", options->lattice, "texels at the cell centres (default) or at the voxels")
       ->check(CLI::IsMember({"cells", "voxels"}));
@@ -182,7 +190,7 @@ void add_bake_command(CLI::App& program, Session& session) {
   command
       .add_option("--rmse", options->rmse,
                   "error wanted: spends rays where they take away most error until it is reached")
-      ->check(CLI::PositiveNumber)
+      ->check(above_zero())
       ->type_name("TARGET");
   command
       .add_option("--sites", options->sites,
@@ -190,7 +198,7 @@ void add_bake_command(CLI::App& program, Session& session) {
                   "(--resampler fit) half where the others say that light changes")
       ->check(CLI::IsMember({"all", "need"}));
   command.add_option("--time", options->time, "seconds to spend on rays and bounces; with --rmse: at most")
-      ->check(CLI::PositiveNumber)
+      ->check(above_zero())
       ->type_name("SECONDS");
   command.add_option("--error-grid", options->error_grid, "write the estimated standard error at each texel")
       ->type_name("FILE.nrrd");
@@ -202,6 +210,7 @@ void add_bake_command(CLI::App& program, Session& session) {
   command
       .add_option("--set", options->set,
                   "an option of a backend: sampler.KEY=VALUE, tracer.KEY=VALUE or resampler.KEY=VALUE")
+      ->check(key_and_value())
       ->type_name("stage.key=value");
   command.add_flag("--compress", options->compress,
                    "gzip the light (--iso-range with --resampler fit leaves most of it empty)");

@@ -21,6 +21,7 @@ void add_convert_command(CLI::App& program, Session& session) {
   session.add_common_options(command);
   command.callback([options, &session] {
     session.on_run([options, &session] {
+      session.require_outputs({{"OUT", options->output}});
       const Volume volume = options->volume.read_as_is(session);
       session.timed("write", [&] { write_volume(volume, options->output, options->write); });
     });

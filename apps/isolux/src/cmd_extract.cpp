@@ -14,6 +14,7 @@
 #include "commands.h"
 #include "light_options.h"
 #include "parse.h"
+#include "usage.h"
 #include "volume_options.h"
 
 namespace isolux {
@@ -118,11 +119,13 @@ void run_extract(const Options& options, Session& session) {
   require_choice(session.stages.tracers, {options.trace.tracer(), {}});
   if (options.side.given() && !options.light.given() && !options.exact_light)
     throw UsageError("--side: it chooses whose light; give --light LIGHT.nrrd or --exact-light");
+  session.require_outputs({{"--output", options.output}});
   const Volume volume = options.volume.read(session);
   std::optional<LightFile> light;
   if (options.light.given()) light = options.light.read(volume, session);
   const Scene scene = scene_for(options, light);
-  warn_outside_range(volume, options.isovalue, session);
+  if (!options.exact_light && options.trace.says_how_to_trace())
+    session.warn("--bounces, --rays and --tracer have no effect without --exact-light");
 
   const OuterSide outer = facing(options, light ? light_outer(*light) : scene.outer);
   const auto extractor = session.stages.extractors.create(choice.name, choice.settings);
@@ -135,6 +138,8 @@ void run_extract(const Options& options, Session& session) {
                                .min_component = options.min_component},
                               session.run);
   });
+  // A cap closes the whole box where all of it is inside.
+  if (!options.cap || mesh.n_faces() == 0) warn_outside_range(volume, options.isovalue, session);
   std::vector<Rgb8> colours;
   if (options.exact_light) {
     colours = exact_colours(mesh, volume, scene_of_side(scene, options.side.or_outer()), light, options, session);
@@ -191,7 +196,9 @@ void add_extract_command(CLI::App& program, Session& session) {
           "differences where the data are smooth (accurate), or from the faces")
       ->check(CLI::IsMember({"gradient", "accurate", "faces"}));
   command.add_option("--backend", options->backend, "extractor backend")->type_name("NAME");
-  command.add_option("--set", options->set, "an option of the extractor")->type_name("key=value");
+  command.add_option("--set", options->set, "an option of the extractor")
+      ->check(key_and_value())
+      ->type_name("key=value");
   session.add_common_options(command);
   command.callback([options, &session] { session.on_run([options, &session] { run_extract(*options, session); }); });
 }

@@ -114,7 +114,7 @@ void add_info_command(CLI::App& program, Session& session) {
       const Volume volume = options->volume.read_as_is(session);
       const Statistics s = statistics(volume);
       if (options->json) {
-        fmt::print("{}\n", to_json(volume, s).dump(2));
+        fmt::print("{}\n", to_json(volume, s).dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
       } else {
         print(volume, s);
       }

@@ -1,21 +1,18 @@
 #include <fmt/format.h>
 #include <fmt/ostream.h>
-#include <isolux/core/error.h>
 #include <isolux/core/field.h>
 #include <isolux/resample/light_reader.h>
 #include <isolux/volume_io/atomic_file.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
-#include <fstream>
 #include <limits>
 #include <memory>
 #include <optional>
 
 #include "commands.h"
 #include "light_options.h"
-#include "parse.h"
+#include "point_table.h"
 #include "volume_options.h"
 
 namespace isolux {
@@ -28,44 +25,6 @@ struct Options {
   std::string points;
   std::string output;
 };
-
-/// Three numbers with commas, semicolons or blanks between; further columns are passed over. Nothing if the first is no
-/// number.
-std::optional<Vec3> parse_point(std::string line) {
-  std::replace_if(
-      line.begin(), line.end(), [](char c) { return c == ',' || c == ';' || c == '\t'; }, ' ');
-  std::istringstream words(line);
-  Vec3 point(0.0);
-  for (int a = 0; a < 3; ++a) {
-    std::string word;
-    words >> word;
-    try {
-      point[a] = parse_number("coordinate", word);
-    } catch (const InvalidInput&) {
-      return std::nullopt;
-    }
-  }
-  return point;
-}
-
-std::vector<Vec3> read_points(const std::string& path) {
-  std::ifstream file(path);
-  if (!file) throw IoError(fmt::format("{}: cannot open the points", path));
-  std::vector<Vec3> points;
-  std::string line;
-  for (std::size_t number = 1; std::getline(file, line); ++number) {
-    while (!line.empty() && std::isspace(static_cast<unsigned char>(line.back())) != 0) line.pop_back();
-    if (line.empty() || line[0] == '#') continue;
-    const auto point = parse_point(line);
-    if (point) {
-      points.push_back(*point);
-    } else if (number > 1) {  // the first line may name the columns
-      throw InvalidInput(fmt::format("{}: line {}: '{}' where three numbers x,y,z are wanted", path, number, line));
-    }
-  }
-  if (file.bad()) throw IoError(fmt::format("{}: cannot read the points: is it a file?", path));
-  return points;
-}
 
 /// The point in index space, moved by rounding errors at most into the box; nothing outside it.
 std::optional<Vec3> inside(const Lattice& lattice, const Vec3& world) {
@@ -81,9 +40,12 @@ std::optional<Vec3> inside(const Lattice& lattice, const Vec3& world) {
 
 void run_probe(const Options& options, Session& session) {
   if (!options.light.given()) throw UsageError("--light is required: the light to read at the points");
+  session.require_outputs(
+      {{"--output", options.output}},
+      {{"VOLUME", options.volume.source()}, {"--light", options.light.path()}, {"--points", options.points}});
   const Volume volume = options.volume.read(session);
   const LightFile light = options.light.read(volume, session);
-  const std::vector<Vec3> points = session.timed("read", [&] { return read_points(options.points); });
+  const std::vector<Vec3> points = session.timed("read", [&] { return read_point_table(options.points); });
   const TrilinearField field(volume);
   const LightReader reader(volume, options.light.of_side(light, options.side.or_outer()), TexelStorage::kBricks,
                            session.run);
@@ -117,7 +79,9 @@ void add_probe_command(CLI::App& program, Session& session) {
   options->volume.add_to(command);
   options->light.add_to(command);
   options->side.add_to(command, "whose light: outer (default), or inner where the light has both");
-  command.add_option("--points", options->points, "one point a line; a first line may name the columns")
+  command
+      .add_option("--points", options->points,
+                  "one point a line, in the columns x, y and z if a first line names them, else in the first three")
       ->required()
       ->type_name("IN.csv");
   command.add_option("-o,--output", options->output, "the table to write")->required()->type_name("OUT.csv");

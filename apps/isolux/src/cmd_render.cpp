@@ -1,10 +1,13 @@
 #include <fmt/format.h>
 #include <isolux/bake/light_metadata.h>
+#include <isolux/core/error.h>
 #include <isolux/render/render.h>
 #include <isolux/resample/light_reader.h>
 #include <isolux/volume_io/atomic_file.h>
 
+#include <cctype>
 #include <cmath>
+#include <filesystem>
 #include <memory>
 #include <optional>
 #include <utility>
@@ -13,6 +16,7 @@
 #include "commands.h"
 #include "light_options.h"
 #include "parse.h"
+#include "usage.h"
 #include "volume_options.h"
 
 namespace isolux {
@@ -20,6 +24,8 @@ namespace {
 
 /// Tangent of half the angle of view from within a volume: 60 degrees.
 constexpr double kHalfHeightFromWithin = 0.577;
+/// Pixels between the two pictures of --mode both.
+constexpr int kGap = 4;
 
 struct Options {
   VolumeOptions volume;
@@ -70,6 +76,20 @@ Camera camera_of(const Options& options, const Lattice& volume, double aspect) {
   return camera;
 }
 
+/// \throw UsageError before any work is done for a picture that cannot be written. Without an extension it may be a
+/// pipe.
+void require_png(const std::string& path, int width, int height) {
+  std::string extension = std::filesystem::path(path).extension().string();
+  for (char& c : extension) c = char(std::tolower(static_cast<unsigned char>(c)));
+  if (!extension.empty() && extension != ".png")
+    throw UsageError(fmt::format("--output: {}: pictures are written as .png", path));
+  try {
+    require_png_size(width, height);
+  } catch (const InvalidInput& error) {
+    throw UsageError(fmt::format("--size: {}", error.what()));
+  }
+}
+
 void run_render(const Options& options, Session& session) {
   const auto [width, height] = parse_size2("--size", options.size);
   const auto view = parse_numbers("--view", options.view, 2);
@@ -78,6 +98,10 @@ void run_render(const Options& options, Session& session) {
   if ((mode == "global" || mode == "both") && !options.light.given()) {
     throw UsageError("--mode " + mode + ": it shows a light; give --light LIGHT.nrrd");
   }
+  require_png(options.output, width, height);
+  if (mode == "both") require_png(options.output, 2 * width + kGap, height);
+  session.require_outputs({{"--output", options.output}},
+                          {{"VOLUME", options.volume.source()}, {"--light", options.light.path()}});
   const Volume volume = options.volume.read(session);
   std::optional<LightFile> light;
   if (options.light.given()) light = options.light.read(volume, session);
@@ -96,7 +120,7 @@ void run_render(const Options& options, Session& session) {
     if (mode == "local") return draw(local_shader(albedo));
     Image global = draw(baked_shader(volume, *light, options, settings.outer, session.run));
     expose(global, options.exposure);
-    return mode == "both" ? side_by_side(draw(local_shader(albedo)), global, 4, Vec3f(1.0f)) : global;
+    return mode == "both" ? side_by_side(draw(local_shader(albedo)), global, kGap, Vec3f(1.0f)) : global;
   });
   session.timed("write", [&] {
     write_atomically_by_name(options.output, [&](const std::string& path) { write_png(image, path); });
@@ -134,6 +158,7 @@ void add_render_command(CLI::App& program, Session& session) {
       ->check(CLI::Range(1, 16))
       ->type_name("N");
   command.add_option("--exposure", options->exposure, "stops by which the global light is made brighter")
+      ->check(finite_number())
       ->type_name("STOPS");
   command
       .add_option("--outer", options->outer,

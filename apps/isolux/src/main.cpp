@@ -7,43 +7,21 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <cstdio>
 #include <exception>
 #include <new>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
 #include "commands.h"
 #include "session.h"
 #include "signals.h"
+#include "terminal.h"
+#include "usage.h"
 
 namespace {
 
 enum ExitStatus { kDone = 0, kFailed = 1, kUsage = 2, kInterrupted = 130 };
-
-int complain(const std::string& what, std::string why, ExitStatus status) {
-  for (char& c : why) {
-    if (c == '\n') c = ' ';
-  }
-  fmt::print(stderr, "isolux: error: {}: {}\n", what, why);
-  return status;
-}
-
-/// CLI11's words, and for an unknown option or command the nearest known one.
-std::string explain(const CLI::ParseError& error, const CLI::App& app) {
-  std::string why = error.what();
-  if (dynamic_cast<const CLI::ExtrasError*>(&error) == nullptr) return why;
-  std::vector<std::string> known;
-  for (const CLI::Option* option : app.get_options()) {
-    for (const auto& name : option->get_lnames()) known.push_back("--" + name);
-  }
-  for (const CLI::App* command : app.get_subcommands({})) known.push_back(command->get_name());
-  for (const auto& word : app.remaining()) {
-    const std::string near = isolux::nearest_word(word, known);
-    if (!near.empty()) why += fmt::format(" (did you mean {}?)", near);
-  }
-  return why;
-}
 
 /// \throw UsageError if the first word is neither an option nor a command; CLI11 would only say that a command is
 /// missing.
@@ -67,8 +45,13 @@ const CLI::App& chosen(const CLI::App& program) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  isolux::open_standard_streams();
   const isolux::SignalWatcher signals;
   std::string what = "command line";
+  const auto fail = [&what](const std::string& why, ExitStatus status) -> int {
+    isolux::complain(what, why);
+    return status;
+  };
   try {
     isolux::Session session;
     session.run.stop = signals.token();
@@ -94,18 +77,22 @@ int main(int argc, char** argv) {
       return program.exit(help);
     } catch (const CLI::ParseError& error) {
       const CLI::App& app = chosen(program);
-      return complain(&app == &program ? what : app.get_name(), explain(error, app), kUsage);
+      if (&app != &program) what = app.get_name();
+      return fail(isolux::explain(error, app), kUsage);
     }
     what = chosen(program).get_name();
     session.run_action();
+    isolux::flush_output();
     return kDone;
   } catch (const isolux::UsageError& error) {
-    return complain(what, error.what(), kUsage);
+    return fail(error.what(), kUsage);
   } catch (const isolux::Cancelled& error) {
-    return complain(what, error.what(), kInterrupted);
+    return fail(error.what(), kInterrupted);
   } catch (const std::bad_alloc&) {
-    return complain(what, "not enough memory", kFailed);
+    return fail("not enough memory", kFailed);
+  } catch (const std::length_error&) {
+    return fail("not enough memory", kFailed);
   } catch (const std::exception& error) {
-    return complain(what, error.what(), kFailed);
+    return fail(error.what(), kFailed);
   }
 }

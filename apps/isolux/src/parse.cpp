@@ -6,6 +6,7 @@
 #include <isolux/core/options.h>
 
 #include <charconv>
+#include <cmath>
 #include <optional>
 
 #include "session.h"
@@ -68,6 +69,8 @@ ValueRange parse_range(const std::string& option, const std::string& text) {
   const auto parts = split(text, ':');
   if (parts.size() != 2) throw UsageError(fmt::format("{} = '{}': allowed is LO:HI", option, text));
   const ValueRange range{float(number(option, parts[0])), float(number(option, parts[1]))};
+  if (!std::isfinite(range.low) || !std::isfinite(range.high))
+    throw UsageError(fmt::format("{} = '{}': allowed are numbers that a 4-byte float holds", option, text));
   if (range.low > range.high) throw UsageError(fmt::format("{} = '{}': LO is above HI", option, text));
   return range;
 }

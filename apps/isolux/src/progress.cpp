@@ -4,9 +4,10 @@
 #include <isolux/core/stopwatch.h>
 #include <unistd.h>
 
-#include <cstdio>
 #include <memory>
 #include <string>
+
+#include "terminal.h"
 
 namespace isolux {
 namespace {
@@ -25,7 +26,7 @@ class ProgressPrinter {
       show_bar(fraction, seconds);
     } else if (seconds > 1.0 && int(fraction * 10.0) > tenths_) {
       tenths_ = int(fraction * 10.0);
-      fmt::print(stderr, "{}: {} %, {:.1f} s\n", stage_, tenths_ * 10, seconds);
+      tell(fmt::format("{}: {} %, {:.1f} s\n", stage_, tenths_ * 10, seconds));
     }
   }
 
@@ -37,9 +38,8 @@ class ProgressPrinter {
     last_shown_ = seconds;
     const int filled = int(fraction * kWidth);
     const double left = fraction > 0.0 ? seconds * (1.0 - fraction) / fraction : 0.0;
-    fmt::print(stderr, "\r{:<12} [{:<{}}] {:3.0f} %  {:.0f} s left \033[K{}", stage_,
-               std::string(std::size_t(filled), '#'), kWidth, 100.0 * fraction, left, done ? "\r\033[K" : "");
-    std::fflush(stderr);
+    tell(fmt::format("\r{:<12} [{:<{}}] {:3.0f} %  {:.0f} s left \033[K{}", stage_,
+                     std::string(std::size_t(filled), '#'), kWidth, 100.0 * fraction, left, done ? "\r\033[K" : ""));
   }
 
   bool terminal_ = isatty(STDERR_FILENO) != 0;

@@ -1,13 +1,14 @@
 #include "session.h"
 
-#include <fmt/format.h>
+#include <isolux/bake/version.h>
 #include <isolux/volume_io/atomic_file.h>
 #include <sys/resource.h>
 
-#include <cstdio>
 #include <limits>
 
 #include "progress.h"
+#include "terminal.h"
+#include "usage.h"
 
 namespace isolux {
 
@@ -19,18 +20,31 @@ void Session::add_common_options(CLI::App& command) {
   command.add_option("--threads", run.threads, "threads to use (default: all)")
       ->check(CLI::Range(1, 4096))
       ->type_name("T");
-  command.add_option("--seed", run.seed, "seed of all random numbers (default 1)")->type_name("S");
+  command.add_option("--seed", run.seed, "seed of all random numbers (default 1)")
+      ->check(seed_number())
+      ->type_name("S");
   command.add_option("--report", report_path_, "write what was done and how long it took, as JSON")
       ->type_name("FILE.json");
   command.add_flag("--quiet", quiet_, "no progress and no remarks");
+  if (command.get_version_ptr() == nullptr) command.set_version_flag("--version", std::string("isolux ") + kVersion);
+  for (CLI::Option* option : command.get_options()) {
+    if (option->get_items_expected_max() > 0) option->check(something());
+  }
 }
 
 void Session::run_action() {
   if (!quiet_) run.progress = make_progress();
+  // Commands that write nothing else; the others say so themselves, with all that they write.
+  require_outputs({});
   const Stopwatch total;
   action_();
   add_seconds("total", total.seconds());
   if (!report_path_.empty()) write_report();
+}
+
+void Session::require_outputs(std::vector<NamedFile> written, const std::vector<NamedFile>& read) const {
+  written.push_back({"--report", report_path_});
+  require_output_files(written, read);
 }
 
 void Session::add_seconds(const std::string& stage, double seconds) {
@@ -45,13 +59,15 @@ void Session::write_report() const {
   complete["peak_memory_bytes"] = std::int64_t(usage.ru_maxrss) * 1024;
   complete["settings"]["threads"] = run.threads;
   complete["settings"]["seed"] = run.seed;
-  write_atomically(report_path_, [&](std::ostream& out) { out << complete.dump(2) << '\n'; });
+  write_atomically(report_path_, [&](std::ostream& out) {
+    out << complete.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) << '\n';
+  });
 }
 
 void Session::say(const std::string& line) const {
-  if (!quiet_) fmt::print(stderr, "{}\n", line);
+  if (!quiet_) tell(line + "\n");
 }
 
-void Session::warn(const std::string& line) const { fmt::print(stderr, "isolux: warning: {}\n", line); }
+void Session::warn(const std::string& line) const { tell("isolux: warning: " + line + "\n"); }
 
 }  // namespace isolux

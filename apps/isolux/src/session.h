@@ -8,6 +8,9 @@
 #include <functional>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <vector>
+
+#include "output_files.h"
 
 namespace isolux {
 
@@ -22,11 +25,14 @@ class Session {
  public:
   Session();
 
-  /// --threads, --seed, --report and --quiet of every command.
+  /// --threads, --seed, --report, --quiet and --version of every command. Called behind all options of its own: none of
+  /// them may be given "".
   void add_common_options(CLI::App& command);
   /// What runs once the whole command line was understood.
   void on_run(std::function<void()> action) { action_ = std::move(action); }
   void run_action();
+  /// What a command does first: see require_output_files; --report is one of those written. \throw IoError, UsageError
+  void require_outputs(std::vector<NamedFile> written, const std::vector<NamedFile>& read = {}) const;
 
   /// Runs `work`, counting its seconds under `stage` in the report.
   template <class Work>

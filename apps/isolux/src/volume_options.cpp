@@ -5,8 +5,10 @@
 #include <isolux/volume_io/scalar_type.h>
 
 #include <cmath>
+#include <optional>
 
 #include "parse.h"
+#include "usage.h"
 
 namespace isolux {
 
@@ -20,6 +22,7 @@ void VolumeOptions::add_to(CLI::App& command) {
       ->check(CLI::IsMember({"little", "big"}))
       ->type_name("ORDER");
   command.add_option("--replace-nonfinite", replacement_, "value for voxels that are infinite or not a number")
+      ->check(finite_number())
       ->type_name("VALUE");
   command.add_flag("--allow-external-data", allow_external_, "a header may name a data file outside its folder");
 }
@@ -27,6 +30,7 @@ void VolumeOptions::add_to(CLI::App& command) {
 ReadOptions VolumeOptions::read_options() const {
   ReadOptions options;
   options.allow_external_data = allow_external_;
+  options.big_endian = endian_ == "big";
   if (dims_.empty() != type_.empty()) throw UsageError("--dims and --type go together: a headerless file needs both");
   if (!dims_.empty()) {
     RawLayout layout;
@@ -36,7 +40,7 @@ ReadOptions VolumeOptions::read_options() const {
     } catch (const InvalidInput& error) {
       throw UsageError(std::string("--type: ") + error.what());
     }
-    layout.big_endian = endian_ == "big";
+    layout.big_endian = options.big_endian;
     options.raw = layout;
   }
   if (!spacing_.empty()) {
@@ -50,17 +54,20 @@ ReadOptions VolumeOptions::read_options() const {
 
 Volume VolumeOptions::read_as_is(Session& session) const {
   const ReadOptions options = read_options();
-  return session.timed("read", [&] { return read_volume(source_, options, session.run, session.stages.readers); });
+  std::optional<float> replacement;
+  if (!replacement_.empty()) replacement = float(parse_numbers("--replace-nonfinite", replacement_, 1)[0]);
+  Volume volume =
+      session.timed("read", [&] { return read_volume(source_, options, session.run, session.stages.readers); });
+  if (replacement) {
+    for (float& voxel : volume.values.values()) {
+      if (!std::isfinite(voxel)) voxel = *replacement;
+    }
+  }
+  return volume;
 }
 
 Volume VolumeOptions::read(Session& session) const {
   Volume volume = read_as_is(session);
-  if (!replacement_.empty()) {
-    const auto value = float(parse_numbers("--replace-nonfinite", replacement_, 1)[0]);
-    for (float& voxel : volume.values.values()) {
-      if (!std::isfinite(voxel)) voxel = value;
-    }
-  }
   require_usable(volume);
   return volume;
 }

@@ -15,10 +15,10 @@ class VolumeOptions {
  public:
   void add_to(CLI::App& command);
   [[nodiscard]] const std::string& source() const { return source_; }
-  /// As in the file: voxels may be infinite or not numbers, axes may be 1 wide. \throw UsageError, IoError,
-  /// InvalidInput
+  /// As in the file, with --replace-nonfinite applied: else voxels may be infinite or not numbers; axes may be 1 wide.
+  /// \throw UsageError, IoError, InvalidInput
   [[nodiscard]] Volume read_as_is(Session& session) const;
-  /// With --replace-nonfinite applied, and fit for every stage (require_usable).
+  /// The same, fit for every stage (require_usable).
   [[nodiscard]] Volume read(Session& session) const;
 
  private:

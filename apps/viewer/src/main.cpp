@@ -7,7 +7,7 @@
 #include <isolux/volume_io/read.h>
 
 #include <CLI/CLI.hpp>
-#include <cstdio>
+#include <algorithm>
 #include <exception>
 #include <new>
 #include <optional>
@@ -18,10 +18,13 @@
 
 #include "app/app.h"
 #include "app/window.h"
+#include "bake_options.h"
 #include "light_options.h"
 #include "parse.h"
 #include "registry_json.h"
 #include "session.h"
+#include "terminal.h"
+#include "usage.h"
 #include "volume_options.h"
 
 namespace {
@@ -30,13 +33,8 @@ using namespace isolux;
 
 enum ExitStatus { kDone = 0, kFailed = 1, kUsage = 2 };
 
-int complain(std::string why, ExitStatus status) {
-  for (char& c : why) {
-    if (c == '\n') c = ' ';
-  }
-  fmt::print(stderr, "isolux: error: view: {}\n", why);
-  return status;
-}
+/// What X11 and the drivers take.
+constexpr int kLargestWindow = 16384;
 
 /// The words of the command line, besides those that other commands have too.
 struct Words {
@@ -65,17 +63,21 @@ struct Words {
             "--scene", scene,
             "what lights a draft (key b) and, without --light, exact light (default: uniform white sky, albedo 0.8)")
         ->type_name("SCENE.json");
-    program.add_option("--iso", isovalue, "isovalue to start with (default: Otsu's threshold)")->type_name("H");
+    program.add_option("--iso", isovalue, "isovalue to start with (default: Otsu's threshold)")
+        ->check(finite_number())
+        ->type_name("H");
     program.add_option("--mode", mode, "global (default with --light), local, or both side by side")
         ->check(CLI::IsMember({"global", "local", "both"}));
     program.add_flag("--exact-light", exact_light, "trace the light at the vertices of the surface, as key x does");
     program.add_option("--view", view, "from where, in degrees (default 30,20)")->type_name("AZIMUTH,ELEVATION");
-    program.add_option("--exposure", exposure, "stops by which the picture is made brighter")->type_name("STOPS");
+    program.add_option("--exposure", exposure, "stops by which the picture is made brighter")
+        ->check(finite_number())
+        ->type_name("STOPS");
     program
         .add_option("--outer", outer, "the side that is outside: lower or higher values (default: what the light says)")
         ->check(CLI::IsMember({"lower", "higher"}));
     program.add_option("--backend", backend, "extractor backend")->type_name("NAME");
-    program.add_option("--set", set, "an option of the extractor")->type_name("KEY=VALUE");
+    program.add_option("--set", set, "an option of the extractor")->check(key_and_value())->type_name("KEY=VALUE");
     program.add_option("--size", size, "of the window (default 1200x800)")->type_name("WxH");
     program.add_option("--screenshot", screenshot, "write a picture before leaving")->type_name("OUT.png");
     program.add_option("--frames", frames, "draw so many pictures and leave")
@@ -87,6 +89,8 @@ struct Words {
   [[nodiscard]] viewer::AppSettings settings(const Session& session) const {
     viewer::AppSettings result;
     std::tie(result.width, result.height) = parse_size2("--size", size);
+    if (std::max(result.width, result.height) > kLargestWindow)
+      throw UsageError(fmt::format("--size = '{}': allowed is {} pixels each way", size, kLargestWindow));
     const auto angles = parse_numbers("--view", view, 2);
     result.frames = frames == 0 && !screenshot.empty() ? 1 : frames;
     result.screenshot = screenshot;
@@ -98,6 +102,7 @@ struct Words {
     result.viewer.help = volume.source().empty();
     result.viewer.extractor.name = backend;
     apply_settings(set, {{"extractor", &result.viewer.extractor.settings}});
+    require_choice(session.stages.extractors, result.viewer.extractor);
     result.viewer.run = session.run;
     if (!scene.empty()) result.viewer.scene = read_scene(scene);
     if (!outer.empty()) result.viewer.outer = outer == "higher" ? OuterSide::kHigher : OuterSide::kLower;
@@ -110,6 +115,19 @@ struct Words {
     return result;
   }
 };
+
+void look(const Words& words, const viewer::AppSettings& settings, Session& session) {
+  session.require_outputs(
+      {{"--screenshot", words.screenshot}},
+      {{"VOLUME", words.volume.source()}, {"--light", words.light.path()}, {"--scene", words.scene}});
+  const viewer::WindowSystem windows;
+  const bool given = !words.volume.source().empty();
+  Volume volume = given ? words.volume.read(session) : read_volume("gen:marschner-lobb", {}, session.run);
+  viewer::Document document = viewer::make_document(std::move(volume));
+  if (words.light.given())
+    document.light = std::make_shared<const LightFile>(words.light.read(*document.volume, session));
+  session.timed("view", [&] { viewer::run_app(std::move(document), settings, session.stages); });
+}
 
 int view(int argc, char** argv) {
   Session session;
@@ -131,29 +149,31 @@ int view(int argc, char** argv) {
   } catch (const CLI::Success& help) {
     return program.exit(help);
   } catch (const CLI::ParseError& error) {
-    return complain(error.what(), kUsage);
+    throw UsageError(explain(error, program));
   }
+  // Taken before the session shows progress, which is for the volume's and the light's way in alone.
   const viewer::AppSettings settings = words.settings(session);
-  const viewer::WindowSystem windows;
-  const bool given = !words.volume.source().empty();
-  Volume volume = given ? words.volume.read(session) : read_volume("gen:marschner-lobb", {}, session.run);
-  viewer::Document document = viewer::make_document(std::move(volume));
-  if (words.light.given())
-    document.light = std::make_shared<const LightFile>(words.light.read(*document.volume, session));
-  viewer::run_app(std::move(document), settings, session.stages);
+  session.on_run([&] { look(words, settings, session); });
+  session.run_action();
+  flush_output();
   return kDone;
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
+  isolux::open_standard_streams();
+  const auto fail = [](const std::string& why, ExitStatus status) -> int {
+    isolux::complain("view", why);
+    return status;
+  };
   try {
     return view(argc, argv);
   } catch (const isolux::UsageError& error) {
-    return complain(error.what(), kUsage);
+    return fail(error.what(), kUsage);
   } catch (const std::bad_alloc&) {
-    return complain("not enough memory", kFailed);
+    return fail("not enough memory", kFailed);
   } catch (const std::exception& error) {
-    return complain(error.what(), kFailed);
+    return fail(error.what(), kFailed);
   }
 }

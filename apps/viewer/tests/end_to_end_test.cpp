@@ -76,10 +76,26 @@ TEST_F(IsoluxView, SaysInOneLineThatThereIsNoDisplay) {
 }
 
 TEST_F(IsoluxView, RefusesAWrongCommandLineBeforeItLooksForADisplay) {
-  for (const char* arguments : {"--no-such-option", "--size 10", "--view 1", "--mode global", "--frames 0"}) {
+  for (const char* arguments :
+       {"--no-such-option", "--size 10", "--size 100000x10", "--view 1", "--mode global", "--frames 0", "--iso nan",
+        "--exposure inf", "--backend none", "--set k", "--screenshot ''", "''"}) {
     EXPECT_EQ(run("env -u DISPLAY", arguments), 2) << arguments;
     EXPECT_EQ(said().rfind("isolux: error: view: ", 0), 0u) << said();
   }
+}
+
+TEST_F(IsoluxView, FindsOutFirstThatAPictureHasNoPlace) {
+  EXPECT_EQ(run("env -u DISPLAY", "gen:sphere:8 --screenshot " + path("none/a.png")), 1);
+  EXPECT_NE(said().find("there is no folder"), std::string::npos) << said();
+}
+
+TEST_F(IsoluxView, WritesItsReport) {
+  if (!has_xvfb()) GTEST_SKIP() << "xvfb-run or xauth is not installed";
+  ASSERT_EQ(run_with_display("gen:sphere:8 --frames 1 --size 64x64 --report " + path("report.json")), 0) << said();
+  std::ostringstream report;
+  report << std::ifstream(path("report.json")).rdbuf();
+  for (const char* key : {"\"seconds\"", "\"read\"", "\"total\"", "\"peak_memory_bytes\""})
+    EXPECT_NE(report.str().find(key), std::string::npos) << report.str();
 }
 
 TEST_F(IsoluxView, DrawsLocalAndGlobalLightAndLeaves) {

@@ -41,6 +41,43 @@ ImageEnvironment read_exr(const std::string& path) {
   }
 }
 
+/// A file for stb that notes when more is asked than there is: of a Radiance HDR that ends early stb makes the rest
+/// black and says nothing, or waits for ever for a run that is not empty.
+class StbFile {
+ public:
+  /// `beyond`: the byte that stands for all those behind the end, if any; -1 ends the file as usual.
+  StbFile(const std::string& path, int beyond) : file_(path, std::ios::binary), beyond_(beyond) {}
+
+  [[nodiscard]] bool ended_early() const { return ended_early_; }
+  static const stbi_io_callbacks& callbacks() {
+    static const stbi_io_callbacks calls{
+        [](void* user, char* into, int count) { return static_cast<StbFile*>(user)->read(into, count); },
+        [](void* user, int count) { static_cast<StbFile*>(user)->skip(count); },
+        [](void* user) { return static_cast<StbFile*>(user)->at_end() ? 1 : 0; }};
+    return calls;
+  }
+
+ private:
+  int read(char* into, int count) {
+    file_.read(into, count);
+    const auto got = int(file_.gcount());
+    if (got > 0) return got;
+    ended_early_ = true;
+    if (beyond_ < 0) return 0;
+    std::fill_n(into, count, char(beyond_));
+    return count;
+  }
+  void skip(int count) {
+    file_.clear();
+    file_.seekg(count, std::ios::cur);
+  }
+  bool at_end() { return file_.peek() == std::ifstream::traits_type::eof(); }
+
+  std::ifstream file_;
+  int beyond_;
+  bool ended_early_ = false;
+};
+
 /// Radiance HDR as it is; 8-bit formats from sRGB, exactly (stb's own conversion is a plain power).
 ImageEnvironment read_with_stb(const std::string& path) {
   const auto srgb_to_linear = [](float v) {
@@ -48,21 +85,28 @@ ImageEnvironment read_with_stb(const std::string& path) {
   };
   ImageEnvironment image;
   int channels = 0;
-  const auto missing = [&] {
-    return IoError(fmt::format("{}: cannot read the image: {}", path, stbi_failure_reason()));
+  const bool hdr = stbi_is_hdr(path.c_str()) != 0;
+  StbFile file(path, hdr ? 0xFF : -1);  // a run of 127 equal values, which no scanline waits for twice
+  const auto require = [&](bool read) {
+    if (!read)
+      throw IoError(fmt::format("{}: cannot read the image: {}{}", path, stbi_failure_reason(),
+                                file.ended_early() ? " (the image ends early)" : ""));
+    if (file.ended_early()) throw IoError(fmt::format("{}: the image ends early", path));
   };
-  if (stbi_is_hdr(path.c_str()) != 0) {
+  if (hdr) {
     const std::unique_ptr<float, void (*)(void*)> data(
-        stbi_loadf(path.c_str(), &image.width, &image.height, &channels, 3), stbi_image_free);
-    if (data == nullptr) throw missing();
+        stbi_loadf_from_callbacks(&StbFile::callbacks(), &file, &image.width, &image.height, &channels, 3),
+        stbi_image_free);
+    require(data != nullptr);
     const float* p = data.get();
     for (std::ptrdiff_t i = 0; i < std::ptrdiff_t(image.width) * image.height; ++i, p += 3)
       image.pixels.emplace_back(p[0], p[1], p[2]);
     return image;
   }
   const std::unique_ptr<stbi_us, void (*)(void*)> data(
-      stbi_load_16(path.c_str(), &image.width, &image.height, &channels, 3), stbi_image_free);
-  if (data == nullptr) throw missing();
+      stbi_load_16_from_callbacks(&StbFile::callbacks(), &file, &image.width, &image.height, &channels, 3),
+      stbi_image_free);
+  require(data != nullptr);
   const stbi_us* p = data.get();
   for (std::ptrdiff_t i = 0; i < std::ptrdiff_t(image.width) * image.height; ++i, p += 3) {
     image.pixels.emplace_back(srgb_to_linear(float(p[0]) / 65535.0f), srgb_to_linear(float(p[1]) / 65535.0f),
@@ -74,7 +118,9 @@ ImageEnvironment read_with_stb(const std::string& path) {
 }  // namespace
 
 ImageEnvironment read_environment_image(const std::string& path) {
-  if (!std::ifstream(path, std::ios::binary)) throw IoError(fmt::format("{}: cannot open the environment image", path));
+  std::error_code error;
+  if (!std::ifstream(path, std::ios::binary) || !std::filesystem::is_regular_file(path, error))
+    throw IoError(fmt::format("{}: cannot open the environment image: is it a file?", path));
   std::string extension = std::filesystem::path(path).extension().string();
   std::transform(extension.begin(), extension.end(), extension.begin(),
                  [](unsigned char c) { return char(std::tolower(c)); });

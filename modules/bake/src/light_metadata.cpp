@@ -12,6 +12,8 @@
 namespace isolux {
 namespace {
 
+constexpr const char* kQuantity = "irradiance/pi";
+
 nlohmann::json choice_to_json(const BackendChoice& choice) {
   nlohmann::json json{{"name", choice.name}};
   for (const auto& [key, value] : choice.settings) json["set"][key] = value;
@@ -65,7 +67,7 @@ LightFile make_light_file(BakeResult result, const Volume& volume, const Scene& 
   const ValueRange range = settings.isovalues.value_or(value_range(volume));
   LightFile light;
   light.metadata = {{"isolux.version", kVersion},
-                    {"isolux.quantity", "irradiance/pi"},
+                    {"isolux.quantity", kQuantity},
                     {"isolux.scene", scene_to_json(scene)},
                     {"isolux.settings", settings_to_json(as_done(settings, result), run)},
                     {"isolux.volume_sha256", volume_sha256(volume)},
@@ -92,6 +94,11 @@ LightFile make_error_file(const BakeResult& result, const Volume& volume, const 
 }
 
 void require_light_of(const LightFile& light, const Volume& volume, const std::string& light_path) {
+  const auto quantity = light.metadata.find("isolux.quantity");
+  if (quantity != light.metadata.end() && quantity->second != kQuantity) {
+    throw InvalidInput(fmt::format("{}: it holds '{}' and not the light, '{}'; --force uses it all the same",
+                                   light_path, quantity->second, kQuantity));
+  }
   const auto it = light.metadata.find("isolux.volume_sha256");
   if (it == light.metadata.end()) {
     throw InvalidInput(fmt::format(

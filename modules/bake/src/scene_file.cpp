@@ -6,8 +6,9 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <glm/geometric.hpp>
+#include <iterator>
 #include <nlohmann/json.hpp>
-#include <sstream>
 
 #include "json_reader.h"
 
@@ -59,10 +60,13 @@ Light read_light(const json& value, const std::string& place) {
   }
   if (type == "rectangle") {
     object.require_keys({"type", "center", "u", "v", "radiance"});
-    return RectangleLight{.center = object.vector("center"),
-                          .u = object.direction("u"),
-                          .v = object.direction("v"),
-                          .radiance = object.colour("radiance")};
+    const RectangleLight rectangle{.center = object.vector("center"),
+                                   .u = object.direction("u"),
+                                   .v = object.direction("v"),
+                                   .radiance = object.colour("radiance")};
+    if (glm::length(glm::cross(rectangle.u, rectangle.v)) <= 0.0f)
+      throw InvalidInput(fmt::format("{}: u and v are parallel; they must span an area", object.place()));
+    return rectangle;
   }
   if (type == "sphere") {
     object.require_keys({"type", "center", "radius", "radiance"});
@@ -160,6 +164,8 @@ Scene parse_scene(const std::string& text, const std::string& folder, const std:
     root = json::parse(text);
   } catch (const json::parse_error& error) {
     throw InvalidInput(fmt::format("{}: not JSON at byte {}", name, error.byte));
+  } catch (const json::out_of_range& error) {
+    throw InvalidInput(fmt::format("{}: a number is too large: {}", name, error.what()));
   }
   const JsonObject object(root, name);
   object.require_keys({"environment", "lights", "albedo", "emission", "outer", "sides"});
@@ -195,10 +201,13 @@ Scene parse_scene(const std::string& text, const std::string& folder, const std:
 Scene read_scene(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
   if (!file) throw IoError(fmt::format("{}: cannot open the scene: {}", path, std::strerror(errno)));
-  std::ostringstream text;
-  text << file.rdbuf();
-  if (!file || !text) throw IoError(fmt::format("{}: cannot read the scene: is it a file?", path));
-  return parse_scene(text.str(), std::filesystem::path(path).parent_path().string(), path);
+  std::error_code error;
+  if (std::filesystem::is_directory(path, error))
+    throw IoError(fmt::format("{}: cannot read the scene: a directory", path));
+  const std::string text(std::istreambuf_iterator<char>(file), {});
+  if (file.bad()) throw IoError(fmt::format("{}: cannot read the scene", path));
+  if (text.empty()) throw InvalidInput(fmt::format("{}: the scene is empty; {{}} is the default one", path));
+  return parse_scene(text, std::filesystem::path(path).parent_path().string(), path);
 }
 
 std::string scene_to_json(const Scene& scene) {

@@ -137,7 +137,9 @@ std::string nearest_word(std::string_view word, const std::vector<std::string>& 
 }
 
 double parse_number(std::string_view what, std::string_view text) {
-  const auto value = whole_number<double>(text);
+  // from_chars takes no plus sign, but people and programs write one.
+  const bool plus = text.size() > 1 && text[0] == '+' && text[1] != '-' && text[1] != '+';
+  const auto value = whole_number<double>(text.substr(plus ? 1 : 0));
   if (!value || !std::isfinite(*value))
     throw InvalidInput(fmt::format("{} = '{}': allowed is a finite number", what, text));
   return *value;

@@ -44,8 +44,9 @@ void parallel_blocks(std::size_t count, std::size_t block_size, const Run& run, 
     const std::unique_lock lock(reporting, std::try_to_lock);
     if (lock.owns_lock()) run.progress(stage, double(now) / double(blocks));
   };
-  const int threads = thread_count(run);
-  if (threads == 1) {
+  // More threads than blocks would only be started and ended, for every loop again.
+  const int threads = int(std::min(std::size_t(thread_count(run)), blocks));
+  if (threads <= 1) {
     for (std::size_t b = 0; b < blocks; ++b) work(b);
   } else {
     // oneTBB prints a warning when it is asked for more threads than this process may run at once, unless told so

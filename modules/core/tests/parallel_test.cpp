@@ -11,7 +11,7 @@ namespace isolux {
 namespace {
 
 TEST(ParallelBlocks, CoverEveryItemOnceForAnyNumberOfThreads) {
-  for (const int threads : {1, 2, 5}) {
+  for (const int threads : {1, 2, 5, 4096}) {
     std::vector<std::atomic<int>> seen(1003);
     parallel_blocks(seen.size(), 10, {.threads = threads}, "", [&](const Block& block) {
       EXPECT_EQ(block.begin, block.index * 10);

@@ -8,6 +8,7 @@
 
 #include <OpenMesh/Core/IO/MeshIO.hh>
 #include <fstream>
+#include <locale>
 
 namespace isolux::mc {
 
@@ -39,8 +40,9 @@ void write_with_openmesh(const IsoMesh& mesh, std::span<const Rgb8> colours, con
   using OpenMesh::IO::Options;
   constexpr std::streamsize kDigits = 9;  // as many as tell any two floats apart
   const QuietOpenMesh quiet;
-  // OpenMesh reports success where a file cannot be opened, so that is found out first.
-  if (!std::ofstream(path, std::ios::binary)) throw IoError(fmt::format("{}: cannot be written", path));
+  // OpenMesh reports success where a file cannot be opened and where the disk is full: it gets a stream to be asked.
+  std::ofstream file(path, std::ios::binary);
+  file.imbue(std::locale::classic());
   Options options;
   if (extension == ".stl")
     options += Options::Binary;
@@ -55,17 +57,18 @@ void write_with_openmesh(const IsoMesh& mesh, std::span<const Rgb8> colours, con
       const Rgb8& c = colours[std::size_t(v.idx())];
       coloured.set_color(v, {c[0], c[1], c[2]});
     }
-    written = OpenMesh::IO::write_mesh(coloured, path, options, kDigits);
+    written = OpenMesh::IO::write_mesh(coloured, file, extension, options, kDigits);
   } else if (extension == ".stl") {
     // Its writer asks for normals of faces.
     IsoMesh with_faces = mesh;
     with_faces.request_face_normals();
     with_faces.update_face_normals();
-    written = OpenMesh::IO::write_mesh(with_faces, path, options, kDigits);
+    written = OpenMesh::IO::write_mesh(with_faces, file, extension, options, kDigits);
   } else {
-    written = OpenMesh::IO::write_mesh(mesh, path, options, kDigits);
+    written = OpenMesh::IO::write_mesh(mesh, file, extension, options, kDigits);
   }
-  if (!written) throw IoError(fmt::format("{}: cannot be written", path));
+  file.close();
+  if (!written || !file) throw IoError(fmt::format("{}: cannot be written", path));
 }
 
 }  // namespace isolux::mc

@@ -190,6 +190,14 @@ TEST_F(WriteMesh, RefusesWhatItCannotWrite) {
   }
 }
 
+TEST_F(WriteMesh, TellsThatTheDiskIsFull) {
+  if (!std::filesystem::exists("/dev/full")) GTEST_SKIP() << "there is no /dev/full here";
+  for (const std::string& extension : mesh_extensions()) {
+    std::filesystem::create_symlink("/dev/full", path("full" + extension));
+    EXPECT_THROW(write_mesh(mesh_, colours_, path("full" + extension)), IoError) << extension;
+  }
+}
+
 TEST_F(WriteMesh, MeshLabOpensThem) {
   if (std::system("command -v meshlabserver > /dev/null && command -v xvfb-run > /dev/null") != 0)
     GTEST_SKIP() << "meshlabserver and xvfb-run are not installed";

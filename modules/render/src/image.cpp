@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <fstream>
 
 #include <stb/stb_image_write.h>
 
@@ -16,15 +17,32 @@ std::uint8_t srgb_code(float linear) {
   return std::uint8_t(std::lround(encoded * 255.0f));
 }
 
+void require_png_size(int width, int height) {
+  // Where stb counts bytes in an int that it doubles.
+  constexpr double kMostBytes = 1 << 30;
+  if ((3.0 * width + 1.0) * height > kMostBytes)
+    throw InvalidInput(
+        fmt::format("a picture of {}x{} pixels: allowed are {:.0f} million in all", width, height, kMostBytes / 3e6));
+}
+
 void write_png(const Image& image, const std::string& path) {
+  require_png_size(image.width, image.height);
   std::vector<std::uint8_t> bytes;
   bytes.reserve(image.pixels.size() * 3);
   for (const Vec3f& p : image.pixels) {
     for (int c = 0; c < 3; ++c) bytes.push_back(srgb_code(p[c]));
   }
-  if (stbi_write_png(path.c_str(), image.width, image.height, 3, bytes.data(), image.width * 3) == 0) {
-    throw IoError(fmt::format("{}: cannot write the picture", path));
-  }
+  // By way of memory: stb's own files do not notice a full disk.
+  std::string png;
+  const auto append = [](void* context, void* data, int size) {
+    static_cast<std::string*>(context)->append(static_cast<const char*>(data), std::size_t(size));
+  };
+  bool written = stbi_write_png_to_func(append, &png, image.width, image.height, 3, bytes.data(), image.width * 3) != 0;
+  std::ofstream file(path, std::ios::binary);
+  file.write(png.data(), std::streamsize(png.size()));
+  file.close();
+  written = written && file;
+  if (!written) throw IoError(fmt::format("{}: cannot write the picture", path));
 }
 
 Image side_by_side(const Image& left, const Image& right, int gap, const Vec3f& colour) {

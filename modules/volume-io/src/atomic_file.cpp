@@ -87,7 +87,22 @@ bool is_special(const fs::path& target) {
   return fs::exists(status) && !fs::is_regular_file(status) && !fs::is_directory(status);
 }
 
+// What went wrong with a temporary went wrong with the file that the user named.
+std::string with_name(std::string message, const std::string& temporary, const std::string& path) {
+  const auto at = message.find(temporary);
+  return at == std::string::npos ? message : message.replace(at, temporary.size(), path);
+}
+
 }  // namespace
+
+void require_writable(const std::string& path) {
+  const fs::path target = real_target(path);
+  if (!is_special(target)) {
+    Temporary removed(target);
+  } else if (access(target.c_str(), W_OK) != 0) {
+    throw IoError(fmt::format("{}: cannot be written: {}", path, std::strerror(errno)));
+  }
+}
 
 void write_atomically(const std::string& path, const std::function<void(std::ostream&)>& write) {
   const fs::path target = real_target(path);
@@ -101,7 +116,12 @@ void write_atomically_by_name(const std::string& path, const std::function<void(
   const fs::path target = real_target(path);
   if (is_special(target)) return write(target.string());
   Temporary temporary(target);
-  write(temporary.path().string());
+  const std::string name = temporary.path().string();
+  try {
+    write(name);
+  } catch (const IoError& error) {
+    throw IoError(with_name(error.what(), name, path));
+  }
   temporary.rename_to_target();
 }
 

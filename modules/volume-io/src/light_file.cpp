@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <locale>
 #include <sstream>
 #include <utility>
 
@@ -30,6 +31,7 @@ std::vector<NearFieldTerm> parse_near_field(const std::string& path, const std::
   std::istringstream parts(text);
   for (std::string part; std::getline(parts, part, ';');) {
     std::istringstream numbers(part);
+    numbers.imbue(std::locale::classic());  // whatever the program around has set
     NearFieldTerm t;
     if (!(numbers >> t.step >> t.mean >> t.weight.x >> t.weight.y >> t.weight.z)) {
       throw InvalidInput(fmt::format("{}: {} '{}'; terms of five numbers are wanted", path, key, text));

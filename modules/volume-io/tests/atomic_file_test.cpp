@@ -65,6 +65,25 @@ TEST(AtomicFile, NamesAMissingFolder) {
   EXPECT_THAT(test::error_of([&] { write_atomically(folder.file(""), write); }), HasSubstr("directory"));
 }
 
+TEST(AtomicFile, FindsOutBeforehandWhetherAFileCanBeWritten) {
+  const test::TemporaryFolder folder;
+  const auto path = folder.write("old.txt", "old");
+  EXPECT_NO_THROW(require_writable(path));
+  EXPECT_EQ(test::read_file(path), "old");
+  EXPECT_NO_THROW(require_writable(folder.file("new.txt")));
+  EXPECT_NO_THROW(require_writable("/dev/null"));
+  EXPECT_EQ(folder.entries(), 1u);
+  EXPECT_THAT(test::error_of([&] { require_writable(folder.file("none/a")); }), HasSubstr("there is no folder"));
+  EXPECT_THAT(test::error_of([&] { require_writable(folder.file("")); }), HasSubstr("directory"));
+}
+
+TEST(AtomicFile, NamesTheFileAskedForAndNotTheTemporary) {
+  const test::TemporaryFolder folder;
+  const auto write = [](const std::string& temporary) { throw IoError(temporary + ": cannot be written"); };
+  EXPECT_EQ(test::error_of([&] { write_atomically_by_name(folder.file("a"), write); }),
+            folder.file("a") + ": cannot be written");
+}
+
 TEST(AtomicFile, WritesIntoADeviceInsteadOfReplacingIt) {
   write_atomically("/dev/null", [](std::ostream& out) { out << "gone"; });
   EXPECT_TRUE(std::filesystem::is_character_file("/dev/null"));

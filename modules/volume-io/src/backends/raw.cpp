@@ -25,7 +25,8 @@ class RawReader final : public VolumeReader {
 
   [[nodiscard]] Volume read(const std::string& source, const ReadOptions& options, const Run& run) const override {
     const std::uint64_t found = detail::require_file(source);
-    const auto layout = options.raw ? options.raw : detail::parse_raw_name(source);
+    auto layout = options.raw ? options.raw : detail::parse_raw_name(source);
+    if (layout && !options.raw) layout->big_endian = options.big_endian;
     if (!layout)
       throw InvalidInput(
           fmt::format("{}: a headerless file says its size and type in its name, as in "

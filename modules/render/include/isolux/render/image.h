@@ -27,7 +27,10 @@ struct Image {
 /// A linear value as an 8-bit sRGB code (IEC 61966-2-1), clamped to 0..255; NaN gives 0.
 [[nodiscard]] std::uint8_t srgb_code(float linear);
 
-/// Writes 8-bit sRGB PNG. \throw IoError naming path
+/// For finding out before the work that write_png would refuse so many pixels. \throw InvalidInput
+void require_png_size(int width, int height);
+
+/// Writes 8-bit sRGB PNG. \throw IoError naming path; InvalidInput beyond 357 million pixels
 void write_png(const Image& image, const std::string& path);
 
 /// Two pictures of one height side by side, with a gap of `gap` pixels in `colour`.

@@ -19,6 +19,7 @@ struct RawLayout {
 /// How to read a volume.
 struct ReadOptions {
   std::optional<RawLayout> raw;      ///< dims, type and endianness of a headerless file
+  bool big_endian = false;           ///< of a headerless file whose name says the rest
   std::optional<Vec3> spacing;       ///< replaces the file's spacing, world units; needed where a format has none
   bool allow_external_data = false;  ///< a header may name a data file outside its own folder
 };

@@ -1,0 +1,44 @@
+#include "terminal.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <isolux/core/error.h>
+
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+
+namespace isolux {
+namespace {
+constexpr std::size_t kLongestMessage = 1000;
+}  // namespace
+
+void open_standard_streams() {
+  // open() takes the lowest number that is free.
+  for (int stream = 0; stream <= 2; ++stream) {
+    if (fcntl(stream, F_GETFD) < 0 && errno == EBADF) static_cast<void>(open("/dev/null", O_RDWR));
+  }
+}
+
+void tell(const std::string& text) {
+  std::fwrite(text.data(), 1, text.size(), stderr);
+  std::fflush(stderr);
+}
+
+void complain(const std::string& what, std::string why) {
+  // The line of a binary file that was read as a header may be endless.
+  if (why.size() > kLongestMessage) why.replace(kLongestMessage / 2, why.size() - kLongestMessage, " ... ");
+  for (char& c : why) {
+    const auto code = static_cast<unsigned char>(c);
+    if (code < 0x20 || code == 0x7F) c = ' ';
+  }
+  tell(fmt::format("isolux: error: {}: {}\n", what, why));
+}
+
+void flush_output() {
+  errno = 0;
+  if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0)
+    throw IoError(fmt::format("standard output: writing failed: {}", std::strerror(errno)));
+}
+
+}  // namespace isolux

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <CLI/App.hpp>
+#include <functional>
+#include <string>
+
+namespace isolux {
+
+/// CLI11's words for what is wrong with a command line, with the nearest known option or command for one that is not
+/// known.
+[[nodiscard]] std::string explain(const CLI::ParseError& error, const CLI::App& app);
+
+/// Checks for CLI::Option::check; each gives what is wrong with the text, or "".
+using TextCheck = std::function<std::string(const std::string&)>;
+
+/// A number above 0.
+[[nodiscard]] TextCheck above_zero();
+/// A number from `low` to `high`.
+[[nodiscard]] TextCheck number_within(double low, double high);
+/// A number that a float can hold.
+[[nodiscard]] TextCheck finite_number();
+/// A whole number of 64 bits.
+[[nodiscard]] TextCheck seed_number();
+/// KEY=VALUE. What is not is perhaps the VOLUME, which CLI11 takes for one more setting.
+[[nodiscard]] TextCheck key_and_value();
+/// Not empty: "" is what a script's unset variable leaves.
+[[nodiscard]] TextCheck something();
+
+}  // namespace isolux

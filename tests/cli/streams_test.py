@@ -1,0 +1,90 @@
+"""What a program does beside its work: full disks, closed streams, files in its way."""
+import os
+import resource
+import signal
+import struct
+import subprocess
+import unittest
+
+from support import ISOLUX, CommandLineTest
+
+
+def small_disk():
+    """Writing beyond 1000 bytes fails, as on a full disk."""
+    signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (1000, 1000))
+
+
+class FullDisk(CommandLineTest):
+    def test_leaves_an_error_that_names_the_file_and_no_half_file(self):
+        self.succeed("bake", "gen:sphere:16", "-o", "light.nrrd", "--rays", 1, "--quiet")
+        self.write("points.csv", "0.5,0.5,0.8\n" * 100)
+        before = sorted(os.listdir(self.folder))
+        surface = ("--iso", "-0.3")
+        commands = [("extract", "gen:sphere:16", *surface, "-o", "out" + end) for end in (".ply", ".glb", ".obj", ".off", ".stl")]
+        commands += [("render", "gen:noise:16", "--iso", "0.5", "-o", "out.png", "--size", "100x100"),
+                     ("bake", "gen:sphere:16", "-o", "out.nrrd", "--rays", "1", "--quiet"),
+                     ("convert", "gen:sphere:16", "out.nrrd"),
+                     ("probe", "gen:sphere:16", "--light", "light.nrrd", "--points", "points.csv", "-o", "out.csv")]
+        for command in commands:
+            with self.subTest(command=command):
+                done = subprocess.run([ISOLUX, *command], cwd=self.folder, capture_output=True, text=True, preexec_fn=small_disk)
+                self.assertEqual(done.returncode, 1, done.stderr)
+                self.assertRegex(done.stderr, r"^isolux: error: \w+: out\.\w+: [^\n]*\n$")
+                self.assertEqual(sorted(os.listdir(self.folder)), before)
+
+    @unittest.skipUnless(os.path.exists("/dev/full"), "there is no /dev/full here")
+    def test_behind_standard_output_is_an_error(self):
+        for command in (("info", "gen:sphere:4"), ("info", "gen:sphere:4", "--json"), ("backends",)):
+            with open("/dev/full", "w") as full:
+                done = subprocess.run([ISOLUX, *command], stdout=full, stderr=subprocess.PIPE, text=True)
+            self.assertEqual(done.returncode, 1, command)
+            self.assertEqual(done.stderr.count("\n"), 1)
+
+
+class StandardStreams(CommandLineTest):
+    def test_that_are_closed_or_full_lose_no_work(self):
+        bake = f"'{ISOLUX}' bake gen:sphere:12 --rays 4 -o "
+        subprocess.run(bake + "usual.nrrd", shell=True, cwd=self.folder, check=True, capture_output=True)
+        subprocess.run(bake + "closed.nrrd <&- >&- 2>&-", shell=True, cwd=self.folder, check=True)
+        self.assertEqual(self.read("closed.nrrd"), self.read("usual.nrrd"))
+        if os.path.exists("/dev/full"):
+            subprocess.run(bake + "full.nrrd 2> /dev/full", shell=True, cwd=self.folder, check=True)
+            self.assertEqual(self.read("full.nrrd"), self.read("usual.nrrd"))
+
+    def test_get_no_control_characters_of_a_broken_file(self):
+        self.write("bell.nrrd", b"NRRD0004\ntype: \x1b[2J\x07" + b"x" * 5000 + b"\ndimension: 3\nsizes: 1 1 1\n\n")
+        line = self.fail(1, "info", "bell.nrrd", says=("bell.nrrd", "type")).stderr
+        self.assertFalse(any(ord(c) < 32 for c in line.rstrip("\n")), repr(line[:100]))
+        self.assertLess(len(line), 1200)
+
+    def test_take_names_that_are_not_unicode(self):
+        name = os.path.join(os.fsencode(self.folder), b"caf\xe9_2x2x2_uint8.raw")
+        with open(name, "wb") as file:
+            file.write(bytes(range(8)))
+        done = subprocess.run([os.fsencode(ISOLUX), b"info", name, b"--json"], capture_output=True)
+        self.assertEqual(done.returncode, 0, done.stderr)
+
+
+class Outputs(CommandLineTest):
+    def test_without_a_place_are_told_before_the_work(self):
+        # The volume is not there either, but nobody has looked yet.
+        for option in ("--error-grid", "--report"):
+            self.fail(1, "bake", "gone.nrrd", "-o", "light.nrrd", option, "nowhere/a", says="nowhere/a")
+        self.fail(1, "bake", "gone.nrrd", "-o", "nowhere/light.nrrd", says="nowhere/light.nrrd")
+        self.fail(1, "convert", "gone.nrrd", "nowhere/a.nrrd", says="nowhere/a.nrrd")
+
+    def test_never_replace_what_is_read_or_one_another(self):
+        self.succeed("convert", "gen:sphere:8", "scan.nrrd")
+        scan = self.read("scan.nrrd")
+        self.fail(2, "bake", "scan.nrrd", "-o", "./scan.nrrd", says=("--output", "VOLUME"))
+        self.fail(2, "bake", "scan.nrrd", "-o", "light.nrrd", "--error-grid", "scan.nrrd", says=("--error-grid", "VOLUME"))
+        self.fail(2, "bake", "scan.nrrd", "-o", "light.nrrd", "--error-grid", "light.nrrd", says=("--error-grid", "--output"))
+        self.fail(2, "bake", "scan.nrrd", "-o", "light.nrrd", "--report", "light.nrrd", says=("--report", "--output"))
+        self.assertEqual(self.read("scan.nrrd"), scan)
+        self.succeed("bake", "scan.nrrd", "-o", "/dev/null", "--report", "/dev/null", "--rays", 1, "--quiet")
+        self.succeed("convert", "scan.nrrd", "scan.nrrd", "--compress")  # in place: nothing is lost
+
+
+if __name__ == "__main__":
+    unittest.main()
