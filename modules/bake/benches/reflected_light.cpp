@@ -5,6 +5,7 @@
 #include <benchmark/benchmark.h>
 #include <isolux/bake.h>
 
+#include <array>
 #include <cmath>
 #include <cstdlib>
 #include <memory>
@@ -23,7 +24,7 @@ struct Case {
   Volume volume;
   Scene scene;
   std::vector<float> isovalues;
-  SampleSet half[2]{};
+  std::array<SampleSet, 2> half{};
 };
 
 Scene lit(bool half_sky) {

@@ -54,8 +54,8 @@ void expect_told_apart(const SampleSet& within, const SampleSet& apart, const st
   EXPECT_EQ(within.variance, apart.variance);
   EXPECT_TRUE(within.lamps.empty());
   ASSERT_EQ(apart.lamps.size(), sun.size());
-  ASSERT_EQ(apart.lamps_variance.size(), apart.size());
-  for (std::size_t s = 0; s < apart.size(); ++s) {
+  ASSERT_EQ(apart.lamps_variance.size(), apart.variance.size());
+  for (std::size_t s = 0; s < sun.size(); ++s) {
     // 16 floats added up in one order or another.
     EXPECT_NEAR(apart.lamps[s], sun[s], 1e-5f);
     EXPECT_LE(apart.lamps[s], apart.radiance[s] + 1e-5f);
