@@ -38,6 +38,26 @@ double off_at_sites(const Volume& volume, const IlluminationGrid& light, const B
   return most;
 }
 
+// A small sphere's light at a distance r is radiance * (radius / r)^2 wherever the surface faces it: the cavity's level
+// sets are spheres about it. Openness changes hardly, and as light does.
+TEST(OwnNearField, DoesNotTakeALampsDistanceForOpenness) {
+  const Volume volume = read_volume("gen:cavity:33");
+  Scene scene;
+  scene.environment = UniformEnvironment{Vec3f(0.0f)};
+  scene.lights = {SphereLight{.center = Vec3f(0.5f), .radius = 0.02f, .radiance = Vec3f(100.0f)}};
+  const BakeResult result = bake(volume, scene, few_rays(0), builtin_stages(), {});
+  const LightReader reader(volume, result.light);
+  const double exact = 100.0 * 0.02 * 0.02 / (0.4 * 0.4);
+  for (int i = 0; i < 200; ++i) {
+    const double z = 1.0 - (i + 0.5) / 100.0;
+    const double across = std::sqrt(1.0 - z * z);
+    const Vec3 towards(across * std::cos(2.4 * i), across * std::sin(2.4 * i), z);
+    const Vec3 at = volume.lattice().frame.index(Vec3(0.5) + 0.4 * towards);
+    // Reading between texels is .1 % off here, rays at a sphere of 3 degrees say all the same; it was 10 to 60 % off.
+    EXPECT_NEAR(double(reader.at_index(at).x), exact, 0.01 * exact) << i;
+  }
+}
+
 // Sites are texel centres rounded to float, 1e-6 grid spacings off, where light may change by some tenths a spacing.
 TEST(OwnNearField, LeavesTheLightOfSitesAsItWasTraced) {
   const Volume volume = read_volume("gen:marschner-lobb:20");

@@ -38,7 +38,7 @@ TEST_P(PartlyKeptLinks, SeeTheSameSky) {
   for (const int rays : {32, 50}) {
     const SampleSet all = links(rays, 0).direct(half_lit(), {}, isolux::Run{}).samples;
     const SampleSet some = links(rays, 8).direct(half_lit(), {}, isolux::Run{}).samples;
-    ASSERT_EQ(all.size(), some.size());
+    ASSERT_EQ(all.variance.size(), some.variance.size());
     for (std::size_t i = 0; i < all.variance.size(); ++i) EXPECT_NEAR(all.radiance[i], some.radiance[i], 1e-6f);
   }
 }

@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 #include <optional>
@@ -24,6 +25,10 @@ constexpr std::array<double, 3> kSteps = {1.0, 2.0, 4.0};
 constexpr double kLeastPart = 0.002;
 /// Likewise, of what as many meaningless terms explain on average.
 constexpr double kLeastOfChance = 10.0;
+/// Of the light (root mean square of the texels), the most that all openness may be worth; volumes under a white sky
+/// have .05 to .4 of its 1. Near a lamp inside the volume openness hardly changes, but as light does, with the
+/// distance; weights that explain one by the other are tens of times the light.
+constexpr double kMostOfLight = 2.0;
 /// Of the moments' diagonal, added to it: openness at several steps may be all alike.
 constexpr double kRidge = 1e-6;
 
@@ -126,7 +131,8 @@ struct Moments {
   std::array<Vec3, 3> by_channel{};  ///< of openness with light
   Vec3 light{0.0};                   ///< squares, by channel
   double rows = 0.0;
-  Vec3 mean{0.0};  ///< openness of all texels
+  Vec3 mean{0.0};     ///< openness of all texels
+  Vec3 squares{0.0};  ///< of their light, by channel
   double texels = 0.0;
 
   void operator+=(const Moments& more) {
@@ -135,6 +141,7 @@ struct Moments {
     light += more.light;
     rows += more.rows;
     mean += more.mean;
+    squares += more.squares;
     texels += more.texels;
   }
 };
@@ -165,6 +172,7 @@ Moments moments_of_layer(const IlluminationGrid& grid, MeasuredLayers& layers, i
   const Index3& size = grid.lattice.size;
   const std::size_t stride[3] = {1, std::size_t(size.x), std::size_t(size.x) * std::size_t(size.y)};
   const std::size_t first = grid.lattice.offset(0, 0, k);
+  const auto channels = std::size_t(grid.channels);
   const bool is_between = k > 0 && k + 1 < size.z;
   const std::vector<Measured>* below = is_between ? &layers.at(k - 1) : nullptr;
   const std::vector<Measured>& here = layers.at(k);
@@ -176,6 +184,10 @@ Moments moments_of_layer(const IlluminationGrid& grid, MeasuredLayers& layers, i
       if (!(here[n].weight > 0.0f)) continue;
       sum.mean += Vec3(here[n].openness);
       sum.texels += 1.0;
+      for (std::size_t c = 0; c < channels; ++c) {
+        const auto e = double(grid.values[(first + n) * channels + c]);
+        sum.squares[int(c)] += e * e;
+      }
       const std::size_t t = first + n;
       const auto add = [&](std::size_t step, const Measured& before, const Measured& after) {
         add_pair(grid.values, grid.channels, {{t - step, t, t + step}, {&before, &here[n], &after}}, sum);
@@ -204,7 +216,7 @@ Moments moments(const NearField& near_field, double outwards, const ResampledGri
   return all;
 }
 
-/// The weights of one channel's terms; none if they explain too little.
+/// The weights of one channel's terms; none if they explain too little, or by more than there is.
 std::optional<Vec3> weights(const Moments& sum, int channel) {
   Vec3 scale(0.0);
   for (int s = 0; s < 3; ++s) scale[s] = sum.openness[s][s] > 0.0 ? 1.0 / std::sqrt(sum.openness[s][s]) : 0.0;
@@ -216,6 +228,9 @@ std::optional<Vec3> weights(const Moments& sum, int channel) {
   const double explained = 2.0 * glm::dot(weight, products) - glm::dot(weight, sum.openness * weight);
   const double least = std::max(kLeastPart, kLeastOfChance * double(kSteps.size()) / std::max(sum.rows, 1.0));
   if (!(explained > least * sum.light[channel])) return {};
+  const double light = std::sqrt(sum.squares[channel] / std::max(sum.texels, 1.0));
+  const Vec3 worth = glm::abs(weight);
+  if (worth.x + worth.y + worth.z > kMostOfLight * light) return {};
   return weight;
 }
 
