@@ -5,6 +5,7 @@
 #include <isolux/core/random.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <utility>
 
@@ -15,6 +16,17 @@ namespace isolux {
 namespace {
 
 constexpr std::size_t kSitesABlock = 8192;
+
+/// Whether no value differs by more than a unit in the last place of the largest.
+bool differ_by_rounding(const std::vector<float>& one, const std::vector<float>& other) {
+  float most = 0.0f;
+  float apart = 0.0f;
+  for (std::size_t i = 0; i < one.size(); ++i) {
+    most = std::max(most, std::fabs(one[i]));
+    apart = std::max(apart, std::fabs(one[i] - other[i]));
+  }
+  return apart <= 0x1p-23f * most;
+}
 
 }  // namespace
 
@@ -66,8 +78,12 @@ TargetLight LightLinks::Solver::before_last(const SolveSettings& settings, std::
                                             Solution& solution) {
   e_ = straight_;
   if (settings.bounces != kAllBounces) {
-    for (int b = 1; b < settings.bounces; ++b) reflect(at_targets(e_)).swap(e_);
-    solution.sweeps = settings.bounces;
+    bool settled = false;
+    for (solution.sweeps = 1; solution.sweeps < settings.bounces && !settled; ++solution.sweeps) {
+      std::vector<float> next = reflect(at_targets(e_));
+      settled = differ_by_rounding(next, e_);
+      e_ = std::move(next);
+    }
     return at_targets(e_);
   }
   if (start.size() == links_.sites_.size() * channels_)

@@ -134,6 +134,18 @@ TEST(LightLinks, KeepTheEmissiveFurnaceWhite) {
   for (const float e : solution.samples.radiance) EXPECT_NEAR(e, 1.0f, 1e-5f);
 }
 
+TEST(LightLinks, FindNoMoreReflectionsThanChangeAnything) {
+  const Volume volume = gyroid(17);
+  std::vector<std::size_t> texel;
+  const Sites sites = cell_sites(volume, OuterSide::kLower, texel);
+  const LightLinks links(volume, sites, {.rays = 16}, isolux::Run{});
+  const Scene scene = furnace(0.5f);
+  const Solution many = links.solve(scene, {.bounces = 1 << 30}, at_texels(volume, texel), isolux::Run{});
+  const Solution some = links.solve(scene, {.bounces = 60}, at_texels(volume, texel), isolux::Run{});
+  EXPECT_LT(many.sweeps, 60);  // half of the rest a sweep, to the last of 24 bits
+  for (std::size_t i = 0; i < sites.size(); ++i) EXPECT_NEAR(many.samples.radiance[i], some.samples.radiance[i], 1e-6f);
+}
+
 TEST(LightLinks, ChangeBrightnessWithoutRays) {
   const Volume volume = gyroid(17);
   std::vector<std::size_t> texel;

@@ -44,7 +44,7 @@ struct LinkSettings {
 };
 
 struct SolveSettings {
-  int bounces = kAllBounces;
+  int bounces = kAllBounces;                                  ///< of a number, no more are found than change anything
   GradientKind gradient = GradientKind::kCentralDifferences;  ///< of light sources' shadow rays
   double tolerance = 2e-3;  ///< all bounces: stop when what is left to come is less, rms over the rms of e
   int most_sweeps = 400;    ///< all bounces: stop anyhow (pockets of albedo 1 that shine)
