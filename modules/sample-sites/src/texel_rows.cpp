@@ -32,10 +32,10 @@ TexelRows::Between TexelRows::between(int axis, double at) const {
 
 std::vector<float> TexelRows::values_along(std::size_t row) const {
   const Index3& size = volume_.lattice().size;
-  const auto j = double(row % std::size_t(texels_.y));
-  const auto k = double(row / std::size_t(texels_.y));
-  const Between y = between(1, to_volume_.origin.y + j * to_volume_.axes[1].y);
-  const Between z = between(2, to_volume_.origin.z + k * to_volume_.axes[2].z);
+  const std::size_t j = row % std::size_t(texels_.y);
+  const std::size_t k = row / std::size_t(texels_.y);
+  const Between y = between(1, to_volume_.origin.y + double(j) * to_volume_.axes[1].y);
+  const Between z = between(2, to_volume_.origin.z + double(k) * to_volume_.axes[2].z);
   std::vector<float> values(std::size_t(size.x), 0.0f);
   for (int corner = 0; corner < 4; ++corner) {
     const int up = corner & 1;

@@ -16,8 +16,9 @@ class TexelRows {
   [[nodiscard]] std::size_t count() const { return std::size_t(texels_.y) * std::size_t(texels_.z); }
   /// The centre of texel x of a row, in the volume's index space, as a site has it.
   [[nodiscard]] Vec3f position(std::size_t row, int x) const {
-    return Vec3f(
-        to_volume_.world({double(x), double(row % std::size_t(texels_.y)), double(row / std::size_t(texels_.y))}));
+    const std::size_t j = row % std::size_t(texels_.y);
+    const std::size_t k = row / std::size_t(texels_.y);
+    return Vec3f(to_volume_.world({double(x), double(j), double(k)}));
   }
   /// x of the texels of a row whose isovalue lies within the range, and of some more beside it by a rounding: all of
   /// the row where the texels' axes are not the volume's. Cost: some nanoseconds a texel.
