@@ -17,7 +17,7 @@ BakeResult bake_of_parts(const Volume& volume, const Scene& scene, BakeSettings 
   return bake(volume, scene, settings, builtin_stages(), {.threads = threads});
 }
 
-BakeSettings without_bounces() {
+BakeSettings sixteen_rays() {
   BakeSettings settings;
   settings.trace.rays = 16;
   settings.trace.bounces = 0;
@@ -25,12 +25,12 @@ BakeSettings without_bounces() {
   return settings;
 }
 
-struct Way {
+struct PartsCase {
   const char* name;
   std::function<void(Scene&, BakeSettings&)> choose;
 };
 
-std::vector<Way> ways() {
+std::vector<PartsCase> parts_cases() {
   return {{"white sky", [](Scene&, BakeSettings&) {}},
           {"colours",
            [](Scene& scene, BakeSettings&) {
@@ -46,9 +46,9 @@ std::vector<Way> ways() {
 TEST(BakeInParts, GivesTheLightOfAllAtOnceBitByBit) {
   // Nets of rays follow from where sites are, not from their number; nothing else of a part is random.
   const Volume volume = read_volume("gen:gyroid:16");
-  for (const Way& way : ways()) {
+  for (const PartsCase& way : parts_cases()) {
     Scene scene;
-    BakeSettings settings = without_bounces();
+    BakeSettings settings = sixteen_rays();
     way.choose(scene, settings);
     const BakeResult whole = bake_of_parts(volume, scene, settings, 1);
     for (const int parts : {2, 7}) {
@@ -69,8 +69,8 @@ TEST(BakeInParts, GivesTheLightOfAllAtOnceBitByBit) {
 
 TEST(BakeInParts, DoesNotDependOnThreads) {
   const Volume volume = read_volume("gen:marschner-lobb:16");
-  const BakeResult one = bake_of_parts(volume, {}, without_bounces(), 5, 1);
-  const BakeResult three = bake_of_parts(volume, {}, without_bounces(), 5, 3);
+  const BakeResult one = bake_of_parts(volume, {}, sixteen_rays(), 5, 1);
+  const BakeResult three = bake_of_parts(volume, {}, sixteen_rays(), 5, 3);
   EXPECT_EQ(one.light.values, three.light.values);
   EXPECT_EQ(one.error->values, three.error->values);
   EXPECT_EQ(one.rmse_estimate, three.rmse_estimate);
@@ -80,8 +80,8 @@ TEST(BakeInParts, LightsVolumesOfFewValues) {
   // Steps between plateaus: many texels of one isovalue, and none at all of what lies between.
   Volume volume = read_volume("gen:sphere:12");
   for (float& value : volume.values.values()) value = value > 0.1f ? 3.0f : value > -0.1f ? 1.0f : 0.0f;
-  const BakeResult whole = bake_of_parts(volume, {}, without_bounces(), 1);
-  const BakeResult pieces = bake_of_parts(volume, {}, without_bounces(), 32);
+  const BakeResult whole = bake_of_parts(volume, {}, sixteen_rays(), 1);
+  const BakeResult pieces = bake_of_parts(volume, {}, sixteen_rays(), 32);
   EXPECT_GT(whole.unlit_texels, 0u);
   EXPECT_EQ(pieces.light.values, whole.light.values);
   EXPECT_EQ(pieces.skipped, whole.skipped);
@@ -112,10 +112,10 @@ TEST(BakeInParts, SeesSunsAndReflectionsAsAllAtOnceDoes) {
   Scene sunny;
   sunny.environment = UniformEnvironment{Vec3f(0.0f)};
   sunny.lights = {SunLight{.direction = {0.3f, 0.2f, 1.0f}, .irradiance = Vec3f(3.0f), .angular_diameter_deg = 4.0f}};
-  expect_equal_but_for_noise(sunny, without_bounces(), "sun");
+  expect_equal_but_for_noise(sunny, sixteen_rays(), "sun");
   Scene reflecting;
   reflecting.albedo = {.keys = {{0.0f, Vec3f(0.8f)}}};
-  BakeSettings paths = without_bounces();
+  BakeSettings paths = sixteen_rays();
   paths.trace.bounces = 1;
   paths.bounce_method = BounceMethod::kPaths;
   expect_equal_but_for_noise(reflecting, paths, "one reflection by paths");
@@ -123,7 +123,7 @@ TEST(BakeInParts, SeesSunsAndReflectionsAsAllAtOnceDoes) {
 
 TEST(BakeInParts, SaysSoWhereThereIsNoSite) {
   const Volume volume = read_volume("gen:sphere:12");
-  BakeSettings settings = without_bounces();
+  BakeSettings settings = sixteen_rays();
   settings.isovalues = ValueRange{-0.5f, -0.5f};
   EXPECT_THROW((void)bake_of_parts(volume, {}, settings, 4), InvalidInput);
 }

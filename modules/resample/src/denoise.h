@@ -14,9 +14,9 @@ namespace isolux {
 /// result, and the samples themselves are one of the choices, their noise counted as far as reading leaves it. Samples
 /// of two sides of an edge are not fitted together: shadow edges and thin walls stay. Lamps' light told apart
 /// (SampleSet::lamps) and the rest are denoised each on its own: where a lamp's light is known, it stays what it is,
-/// edges included, and does not part the windows of the rest. The same bits for any number of threads. Cost: some 32
-/// microseconds of a thread a sample whose neighbours are noisy, 80 bytes; most of a sun's light costs a few. \throw
-/// InvalidInput as resample() does; Cancelled
+/// edges included, and does not part the windows of the rest. The same bits for any number of threads. Cost: some tens
+/// of microseconds of a thread a sample whose neighbours are noisy, the search for these where they are not; 80 bytes.
+/// \throw InvalidInput as resample() does; Cancelled
 [[nodiscard]] SampleSet denoised(const Volume& volume, const SampleSet& samples, const Run& run);
 
 }  // namespace isolux
