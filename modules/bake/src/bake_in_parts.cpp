@@ -116,8 +116,9 @@ bool can_bake_in_parts(const Volume& volume, const BakeSettings& settings, const
     return false;
   // Of more sites a cell, the nets that neighbours share depend on how many there are.
   const Lattice texels = texel_lattice(volume.lattice(), settings);
+  const int beyond_cells = settings.lattice == TexelLattice::kVoxels ? 1 : 0;
   for (int a = 0; a < 3; ++a)
-    if (texels.size[a] > volume.lattice().size[a]) return false;
+    if (texels.size[a] > volume.lattice().size[a] - 1 + beyond_cells) return false;
   return stages.resamplers.create(settings.resampler.name, settings.resampler.settings)->takes_parts();
 }
 

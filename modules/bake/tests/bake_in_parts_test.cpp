@@ -38,6 +38,7 @@ std::vector<PartsCase> parts_cases() {
            }},
           {"at the voxels", [](Scene&, BakeSettings& s) { s.lattice = TexelLattice::kVoxels; }},
           {"fewer texels", [](Scene&, BakeSettings& s) { s.texels = Index3(9, 11, 7); }},
+          {"more texels than cells", [](Scene&, BakeSettings& s) { s.texels = Index3(16); }},
           {"a range", [](Scene&, BakeSettings& s) {
              s.isovalues = ValueRange{-0.4f, 0.3f};
            }}};

@@ -108,9 +108,9 @@ struct BakeResult {
 [[nodiscard]] BakeSettings with_defaults(BakeSettings settings, const Stages& stages);
 
 /// Lights all level sets of a volume at once, with_defaults(). The same bits for any number of threads. Where
-/// scene.sides is kBoth, each side's light is bit by bit that of a bake of scene_of_side(); sites are found once, a
-/// time is shared. \throw InvalidInput if the volume is not usable, is constant, no site is found, or a backend or
-/// option is unknown; Cancelled.
+/// scene.sides is kBoth, each side's light is bit by bit that of a bake of scene_of_side(); a time is shared,
+/// sites are found once but where they come in parts. \throw InvalidInput if the volume is not usable, is constant, no
+/// site is found, or a backend or option is unknown; Cancelled.
 [[nodiscard]] BakeResult bake(const Volume& volume, const Scene& scene, const BakeSettings& settings,
                               const Stages& stages, const Run& run);
 
