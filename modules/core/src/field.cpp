@@ -7,10 +7,11 @@
 namespace isolux {
 
 /// The cell that holds a point and the place in it.
-struct TrilinearField::Place {
+template <class Value>
+struct TrilinearFieldOf<Value>::Place {
   Index3 cell{0};
   Vec3 fraction{0.0};
-  const float* corner = nullptr;  ///< value at the cell's first grid point
+  const Value* corner = nullptr;  ///< value at the cell's first grid point
   std::ptrdiff_t stride[3]{};     ///< from it to the neighbour on each axis
 
   /// The corner values, x fastest.
@@ -34,12 +35,12 @@ namespace {
 double mix(double a, double b, double t) { return a + t * (b - a); }
 }  // namespace
 
-TrilinearField::TrilinearField(const Volume& volume)
-    : lattice_(volume.lattice()),
-      data_(volume.values.values().data()),
-      gradient_to_world_(lattice_.frame.gradient_to_world()) {}
+template <class Value>
+TrilinearFieldOf<Value>::TrilinearFieldOf(const Lattice& lattice, std::span<const Value> values)
+    : lattice_(lattice), data_(values.data()), gradient_to_world_(lattice_.frame.gradient_to_world()) {}
 
-TrilinearField::Place TrilinearField::place(const Vec3& index) const {
+template <class Value>
+typename TrilinearFieldOf<Value>::Place TrilinearFieldOf<Value>::place(const Vec3& index) const {
   Place p;
   for (int a = 0; a < 3; ++a) {
     const double x = std::clamp(index[a], 0.0, double(lattice_.size[a] - 1));
@@ -53,7 +54,8 @@ TrilinearField::Place TrilinearField::place(const Vec3& index) const {
   return p;
 }
 
-double TrilinearField::value(const Vec3& index) const {
+template <class Value>
+double TrilinearFieldOf<Value>::value(const Vec3& index) const {
   const Place p = place(index);
   double v[8];
   p.load(v);
@@ -62,7 +64,8 @@ double TrilinearField::value(const Vec3& index) const {
              f.z);
 }
 
-Vec3 TrilinearField::cell_gradient(const Vec3& index) const {
+template <class Value>
+Vec3 TrilinearFieldOf<Value>::cell_gradient(const Vec3& index) const {
   const Place p = place(index);
   double v[8];
   p.load(v);
@@ -72,7 +75,8 @@ Vec3 TrilinearField::cell_gradient(const Vec3& index) const {
           mix(mix(v[4] - v[0], v[5] - v[1], f.x), mix(v[6] - v[2], v[7] - v[3], f.x), f.y)};
 }
 
-bool TrilinearField::is_flat_around(const Vec3& index) const {
+template <class Value>
+bool TrilinearFieldOf<Value>::is_flat_around(const Vec3& index) const {
   if (cell_gradient(index) != Vec3(0.0)) return false;
   Index3 first;
   Index3 last;
@@ -80,7 +84,7 @@ bool TrilinearField::is_flat_around(const Vec3& index) const {
     first[a] = std::clamp(int(std::ceil(index[a])) - 1, 0, lattice_.size[a] - 1);
     last[a] = std::clamp(int(std::floor(index[a])) + 1, 0, lattice_.size[a] - 1);
   }
-  const float value = data_[lattice_.offset(first.x, first.y, first.z)];
+  const Value value = data_[lattice_.offset(first.x, first.y, first.z)];
   for (int k = first.z; k <= last.z; ++k) {
     for (int j = first.y; j <= last.y; ++j) {
       for (int i = first.x; i <= last.x; ++i) {
@@ -91,22 +95,24 @@ bool TrilinearField::is_flat_around(const Vec3& index) const {
   return true;
 }
 
-double TrilinearField::difference(int i, int j, int k, int axis) const {
+template <class Value>
+double TrilinearFieldOf<Value>::difference(int i, int j, int k, int axis) const {
   const int at[3] = {i, j, k};
   const std::ptrdiff_t stride[3] = {1, lattice_.size.x, std::ptrdiff_t(lattice_.size.x) * lattice_.size.y};
-  const float* here = data_ + lattice_.offset(i, j, k);
+  const Value* here = data_ + lattice_.offset(i, j, k);
   const bool low = at[axis] > 0;
   const bool high = at[axis] + 1 < lattice_.size[axis];
   const double d = double(here[high ? stride[axis] : 0]) - double(here[low ? -stride[axis] : 0]);
   return low && high ? 0.5 * d : d;
 }
 
-Vec3 TrilinearField::smooth_gradient(const Vec3& index) const {
+template <class Value>
+Vec3 TrilinearFieldOf<Value>::smooth_gradient(const Vec3& index) const {
   const Place p = place(index);
   Vec3 g(0.0);
   if (p.is_inside(lattice_.size)) {  // the same sums without asking where each corner is: three times as fast
     for (int q = 0; q < 8; ++q) {
-      const float* here = p.corner + (q & 1) * p.stride[0] + (q >> 1 & 1) * p.stride[1] + (q >> 2) * p.stride[2];
+      const Value* here = p.corner + (q & 1) * p.stride[0] + (q >> 1 & 1) * p.stride[1] + (q >> 2) * p.stride[2];
       const double w = p.weight(q);
       for (int a = 0; a < 3; ++a) g[a] += w * (0.5 * (double(here[p.stride[a]]) - double(here[-p.stride[a]])));
     }
@@ -123,11 +129,13 @@ Vec3 TrilinearField::smooth_gradient(const Vec3& index) const {
   return g;
 }
 
-Vec3 TrilinearField::world_gradient(const Vec3& index, GradientKind kind) const {
+template <class Value>
+Vec3 TrilinearFieldOf<Value>::world_gradient(const Vec3& index, GradientKind kind) const {
   return gradient_to_world_ * (kind == GradientKind::kCell ? cell_gradient(index) : smooth_gradient(index));
 }
 
-Vec3 TrilinearField::normal(const Vec3& index, OuterSide outer, GradientKind kind) const {
+template <class Value>
+Vec3 TrilinearFieldOf<Value>::normal(const Vec3& index, OuterSide outer, GradientKind kind) const {
   const Vec3 g = kind == GradientKind::kCell ? cell_gradient(index) : smooth_gradient(index);
   double v[8];
   place(index).load(v);
@@ -141,5 +149,11 @@ Vec3 TrilinearField::normal(const Vec3& index, OuterSide outer, GradientKind kin
   if (!(length > 0.0)) return Vec3(0.0);
   return n * ((outer == OuterSide::kLower ? -1.0 : 1.0) / length);
 }
+
+template class TrilinearFieldOf<float>;
+template class TrilinearFieldOf<std::uint8_t>;
+template class TrilinearFieldOf<std::int8_t>;
+template class TrilinearFieldOf<std::uint16_t>;
+template class TrilinearFieldOf<std::int16_t>;
 
 }  // namespace isolux

@@ -3,6 +3,7 @@
 #include <isolux/core/volume.h>
 
 #include <cstdint>
+#include <span>
 
 namespace isolux {
 
@@ -25,11 +26,12 @@ enum class GradientKind : std::uint8_t {
 };
 
 /// f: the trilinear interpolant of a volume, evaluated in double precision. Positions are in index space and are
-/// clamped to the box. A cheap view: copies freely, callable from many threads, does not own the volume. \pre two grid
-/// points an axis.
-class TrilinearField {
+/// clamped to the box. A cheap view: copies freely, callable from many threads, does not own the volume. Of values in
+/// any of the types of StoredVolume, with the same results. \pre two grid points an axis.
+template <class Value>
+class TrilinearFieldOf {
  public:
-  explicit TrilinearField(const Volume& volume);
+  TrilinearFieldOf(const Lattice& lattice, std::span<const Value> values);
 
   [[nodiscard]] double value(const Vec3& index) const;
   /// Analytic gradient of the cell holding the point (the lower cell on a shared face), index space.
@@ -47,15 +49,21 @@ class TrilinearField {
   [[nodiscard]] double difference(int i, int j, int k, int axis) const;
 
   [[nodiscard]] const Lattice& lattice() const { return lattice_; }
-  [[nodiscard]] const float* data() const { return data_; }
+  [[nodiscard]] const Value* data() const { return data_; }
 
  private:
   struct Place;
   [[nodiscard]] Place place(const Vec3& index) const;
 
   Lattice lattice_;
-  const float* data_;
+  const Value* data_;
   Mat3 gradient_to_world_;
+};
+
+/// Of a volume in floats.
+class TrilinearField : public TrilinearFieldOf<float> {
+ public:
+  explicit TrilinearField(const Volume& volume) : TrilinearFieldOf<float>(volume.lattice(), volume.values.values()) {}
 };
 
 }  // namespace isolux

@@ -2,8 +2,11 @@
 
 #include <isolux/core/grid.h>
 
+#include <cstddef>
 #include <cstdint>
+#include <span>
 #include <string>
+#include <variant>
 
 namespace isolux {
 
@@ -21,7 +24,8 @@ enum class ScalarType : std::uint8_t {
   kFloat64
 };
 
-/// A scalar field sampled at grid points; its trilinear interpolant f is what every stage sees (see field.h).
+/// A scalar field sampled at grid points, in floats; its trilinear interpolant f is what every stage sees (see
+/// field.h).
 struct Volume {
   Grid<float> values;  ///< finite; at least 2 points an axis for anything but reading and writing
   std::string name;    ///< the file's path or `gen:` text, for messages and file headers
@@ -31,16 +35,60 @@ struct Volume {
   [[nodiscard]] const Lattice& lattice() const { return values.lattice(); }
 };
 
+/// The same with its values in the type that the file stores, where that is whole numbers of 8 or 16 bits, else in
+/// floats: a quarter or half of the memory for who needs no floats, such as the extraction of a surface. Every value of
+/// the narrow types is a float, so both kinds of volume are the same field.
+struct StoredVolume {
+  std::variant<Grid<float>, Grid<std::uint8_t>, Grid<std::int8_t>, Grid<std::uint16_t>, Grid<std::int16_t>> values;
+  std::string name;
+  ScalarType stored_type = ScalarType::kFloat32;
+  std::string space = "left-posterior-superior";
+
+  [[nodiscard]] const Lattice& lattice() const;
+};
+
+/// The volume in floats. Those that are there already are moved, not copied.
+[[nodiscard]] Volume to_floats(StoredVolume volume);
+/// The volume as it is, in floats.
+[[nodiscard]] StoredVolume keep_floats(Volume volume);
+
+/// Looks at a volume of either kind, which it does not own: what takes it needs no floats.
+class VolumeView {
+ public:
+  using Voxels = std::variant<std::span<const float>, std::span<const std::uint8_t>, std::span<const std::int8_t>,
+                              std::span<const std::uint16_t>, std::span<const std::int16_t>>;
+
+  VolumeView(const Volume& volume);        // NOLINT(google-explicit-constructor)
+  VolumeView(const StoredVolume& volume);  // NOLINT(google-explicit-constructor)
+
+  [[nodiscard]] const Lattice& lattice() const { return *lattice_; }
+  [[nodiscard]] const std::string& name() const { return *name_; }
+  [[nodiscard]] const std::string& space() const { return *space_; }
+  [[nodiscard]] ScalarType stored_type() const { return stored_type_; }
+  /// x fastest. For inner loops: std::visit.
+  [[nodiscard]] const Voxels& voxels() const { return voxels_; }
+  [[nodiscard]] float operator()(int i, int j, int k) const;
+  /// The values from number `first` on, as floats. \pre there are as many
+  void copy(std::size_t first, std::span<float> out) const;
+
+ private:
+  const Lattice* lattice_;
+  const std::string* name_;
+  const std::string* space_;
+  ScalarType stored_type_;
+  Voxels voxels_;
+};
+
 struct ValueRange {
   float low = 0.0f;
   float high = 0.0f;
 };
 
 /// Smallest and largest value. \pre at least one voxel. Cost: one pass.
-[[nodiscard]] ValueRange value_range(const Volume& volume);
+[[nodiscard]] ValueRange value_range(const VolumeView& volume);
 
 /// \throw InvalidInput, naming the volume, if an axis has fewer than two grid points or a value is not finite: what
 /// every stage after reading relies on.
-void require_usable(const Volume& volume);
+void require_usable(const VolumeView& volume);
 
 }  // namespace isolux
