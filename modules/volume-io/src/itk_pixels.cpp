@@ -40,7 +40,8 @@ void send_block(const SendBytes& send, ScalarType type, std::span<const std::byt
   send(values);
 }
 
-ReceivedVolume receive_volume(ByteSource& received, const std::string& path, Index3 expected, const Run& run) {
+ReceivedVolume receive_volume(ByteSource& received, const std::string& path, Index3 expected, VoxelForm form,
+                              const Run& run) {
   ReceivedVolume volume;
   volume.header = receive_value<SentVolume>(received, path);
   const Index3 size = volume.header.lattice.size;
@@ -58,14 +59,14 @@ ReceivedVolume receive_volume(ByteSource& received, const std::string& path, Ind
           fmt::format("{}: {} values expected of the library that reads it, {} came", path, count / blocks, in_block));
     Run quiet = run;
     if (blocks > 1) quiet.progress = {};
-    auto values = decode_scalars(received, {block.type, false}, in_block, path, quiet);
-    if (blocks == 1) {
+    auto values = decode_scalars(received, {block.type, false}, in_block, form, path, quiet);
+    if (b == 0) {
       volume.values = std::move(values);
+      std::visit([&](auto& list) { list.reserve(count); }, volume.values);
     } else {
-      volume.values.reserve(count);
-      volume.values.insert(volume.values.end(), values.begin(), values.end());
-      if (run.progress) run.progress("read", double(b + 1) / double(blocks));
+      append(volume.values, values);
     }
+    if (blocks > 1 && run.progress) run.progress("read", double(b + 1) / double(blocks));
   }
   return volume;
 }

@@ -1,11 +1,10 @@
 #pragma once
 
 #include "child_process.h"
+#include "scalars.h"
 
 #include <isolux/core/lattice.h>
 #include <isolux/volume_io/scalar_type.h>
-
-#include <vector>
 
 namespace isolux::detail {
 
@@ -24,9 +23,9 @@ void send_block(const SendBytes& send, ScalarType type, std::span<const std::byt
 /// `expected`
 struct ReceivedVolume {
   SentVolume header;
-  std::vector<float> values;
+  AnyValues values;
 };
 [[nodiscard]] ReceivedVolume receive_volume(ByteSource& received, const std::string& path, Index3 expected,
-                                            const Run& run);
+                                            VoxelForm form, const Run& run);
 
 }  // namespace isolux::detail

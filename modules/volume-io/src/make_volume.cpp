@@ -25,8 +25,8 @@ void require_frame(const std::string& path, const IndexToWorld& frame) {
     throw InvalidInput(fmt::format("{}: the directions of the axes span no volume", path));
 }
 
-Volume make_volume(const std::string& name, Lattice lattice, std::vector<float> values, ScalarType stored,
-                   std::string space, const ReadOptions& options) {
+StoredVolume make_volume(const std::string& name, Lattice lattice, AnyValues values, ScalarType stored,
+                         std::string space, const ReadOptions& options) {
   if (options.spacing) {
     for (int a = 0; a < 3; ++a) {
       const double step = (*options.spacing)[a];
@@ -36,10 +36,9 @@ Volume make_volume(const std::string& name, Lattice lattice, std::vector<float> 
     }
   }
   require_frame(name, lattice.frame);
-  return {.values = Grid<float>(lattice, std::move(values)),
-          .name = name,
-          .stored_type = stored,
-          .space = std::move(space)};
+  StoredVolume volume{.values = {}, .name = name, .stored_type = stored, .space = std::move(space)};
+  std::visit([&](auto& list) { volume.values = Grid(lattice, std::move(list)); }, values);
+  return volume;
 }
 
 }  // namespace isolux::detail

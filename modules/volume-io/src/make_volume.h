@@ -3,7 +3,8 @@
 #include <isolux/volume_io/volume_reader.h>
 
 #include <string>
-#include <vector>
+
+#include "scalars.h"
 
 namespace isolux::detail {
 
@@ -12,7 +13,7 @@ void require_frame(const std::string& path, const IndexToWorld& frame);
 
 /// A volume of values read, with ReadOptions::spacing in place of the file's. \throw InvalidInput for a spacing that is
 /// not positive and finite, or for a frame as require_frame
-[[nodiscard]] Volume make_volume(const std::string& name, Lattice lattice, std::vector<float> values, ScalarType stored,
-                                 std::string space, const ReadOptions& options);
+[[nodiscard]] StoredVolume make_volume(const std::string& name, Lattice lattice, AnyValues values, ScalarType stored,
+                                       std::string space, const ReadOptions& options);
 
 }  // namespace isolux::detail

@@ -25,7 +25,8 @@ std::uint64_t skip_lines(const NrrdHeader& header) {
   return offset;
 }
 
-std::vector<float> read_raw(const NrrdHeader& header, std::uint64_t offset, std::uint64_t count, const Run& run) {
+AnyValues read_raw(const NrrdHeader& header, std::uint64_t offset, std::uint64_t count, VoxelForm form,
+                   const Run& run) {
   const std::uint64_t size = require_file(header.data_file);
   const std::uint64_t needed = count * bytes_per_scalar(header.layout.type);
   const std::uint64_t skip = header.byte_skip > 0 ? std::uint64_t(header.byte_skip) : 0;
@@ -36,10 +37,11 @@ std::vector<float> read_raw(const NrrdHeader& header, std::uint64_t offset, std:
   if (found < needed || (found > needed && !foreign))
     throw IoError(fmt::format("{}: {} bytes of data expected, {} found", header.data_file, needed, found));
   const std::uint64_t begin = header.byte_skip < 0 ? size - needed : offset + skip;
-  return decode_scalars(*file_source(header.data_file, begin), header.layout, count, header.data_file, run);
+  return decode_scalars(*file_source(header.data_file, begin), header.layout, count, form, header.data_file, run);
 }
 
-std::vector<float> read_gzip(const NrrdHeader& header, std::uint64_t offset, std::uint64_t count, const Run& run) {
+AnyValues read_gzip(const NrrdHeader& header, std::uint64_t offset, std::uint64_t count, VoxelForm form,
+                    const Run& run) {
   const std::uint64_t size = require_file(header.data_file);
   const std::uint64_t needed = count * bytes_per_scalar(header.layout.type);
   if (needed / kLargestInflation > size)
@@ -47,7 +49,7 @@ std::vector<float> read_gzip(const NrrdHeader& header, std::uint64_t offset, std
                               needed, size));
   const auto source = gzip_source(header.data_file, offset);
   skip_bytes(*source, std::uint64_t(header.byte_skip), header.data_file);
-  auto values = decode_scalars(*source, header.layout, count, header.data_file, run);
+  auto values = decode_scalars(*source, header.layout, count, form, header.data_file, run);
   std::byte more{};
   if (source->read(std::span(&more, 1)) != 0)
     throw IoError(fmt::format("{}: {} bytes of data expected, more found", header.data_file, needed));
@@ -102,16 +104,16 @@ std::vector<float> read_text(const NrrdHeader& header, std::uint64_t offset, std
 
 }  // namespace
 
-std::vector<float> read_nrrd_values(const NrrdHeader& header, const Run& run) {
+AnyValues read_nrrd_values(const NrrdHeader& header, VoxelForm form, const Run& run) {
   std::vector<std::int64_t> sizes;
   for (const auto& axis : header.axes) sizes.push_back(axis.size);
   const std::uint64_t count = checked_count(header.path, sizes, bytes_per_scalar(header.layout.type));
   const std::uint64_t offset = skip_lines(header);
   switch (header.encoding) {
     case NrrdEncoding::kRaw:
-      return read_raw(header, offset, count, run);
+      return read_raw(header, offset, count, form, run);
     case NrrdEncoding::kGzip:
-      return read_gzip(header, offset, count, run);
+      return read_gzip(header, offset, count, form, run);
     case NrrdEncoding::kText:
       return read_text(header, offset, count, run);
   }

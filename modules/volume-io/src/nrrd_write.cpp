@@ -56,7 +56,7 @@ void write_nrrd_header(std::ostream& out, const NrrdImage& image) {
   out.write(text.data(), std::streamsize(text.size()));
 }
 
-void write_nrrd_values(std::ostream& out, const NrrdImage& image, std::span<const float> values) {
+void write_nrrd_values(std::ostream& out, const NrrdImage& image, const VolumeView::Voxels& values) {
   if (image.compress) {
     GzipWriter gzip(out);
     encode_scalars(values, image.type, [&](std::span<const std::byte> bytes) { gzip.write(bytes); });

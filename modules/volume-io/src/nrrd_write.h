@@ -5,7 +5,6 @@
 
 #include <map>
 #include <ostream>
-#include <span>
 #include <string>
 
 namespace isolux::detail {
@@ -26,6 +25,6 @@ struct NrrdImage {
 void write_nrrd_header(std::ostream& out, const NrrdImage& image);
 
 /// The values, gzip or raw, little endian. \throw InvalidInput as encode_scalars
-void write_nrrd_values(std::ostream& out, const NrrdImage& image, std::span<const float> values);
+void write_nrrd_values(std::ostream& out, const NrrdImage& image, const VolumeView::Voxels& values);
 
 }  // namespace isolux::detail

@@ -14,10 +14,9 @@ constexpr std::string_view kFormats =
     "gen:NAME[:N], NRRD (.nrrd, .nhdr), NIfTI (.nii, .nii.gz), MetaImage (.mha, .mhd), MRC (.mrc, .map), legacy VTK "
     "(.vtk), TIFF stacks, folders of DICOM slices, and name_WxHxD_type.raw";
 
-}  // namespace
-
-Volume read_volume(const std::string& source, const ReadOptions& options, const Run& run,
-                   const Registry<VolumeReader>& registry) {
+StoredVolume read_in_form(const std::string& source, ReadOptions options, VoxelForm form, const Run& run,
+                          const Registry<VolumeReader>& registry) {
+  options.form = form;
   std::unique_ptr<VolumeReader> best;
   int best_claim = 0;
   std::string missing;
@@ -45,8 +44,24 @@ Volume read_volume(const std::string& source, const ReadOptions& options, const 
   }
 }
 
+}  // namespace
+
+Volume read_volume(const std::string& source, const ReadOptions& options, const Run& run,
+                   const Registry<VolumeReader>& registry) {
+  return to_floats(read_in_form(source, options, VoxelForm::kFloats, run, registry));
+}
+
 Volume read_volume(const std::string& source, const ReadOptions& options, const Run& run) {
   return read_volume(source, options, run, readers());
+}
+
+StoredVolume read_stored_volume(const std::string& source, const ReadOptions& options, const Run& run,
+                                const Registry<VolumeReader>& registry) {
+  return read_in_form(source, options, VoxelForm::kStored, run, registry);
+}
+
+StoredVolume read_stored_volume(const std::string& source, const ReadOptions& options, const Run& run) {
+  return read_stored_volume(source, options, run, readers());
 }
 
 }  // namespace isolux

@@ -46,15 +46,43 @@ auto with_type(ScalarType type, const F& f) {
 }
 
 template <class T>
-void decode_chunk(std::byte* bytes, std::size_t count, bool big_endian, float* out) {
-  if (big_endian && sizeof(T) > 1) {
-    for (std::size_t i = 0; i < count; ++i) std::reverse(bytes + i * sizeof(T), bytes + (i + 1) * sizeof(T));
+void swap_bytes(std::span<std::byte> bytes) {
+  for (std::size_t i = 0; i < bytes.size(); i += sizeof(T))
+    std::reverse(bytes.begin() + std::ptrdiff_t(i), bytes.begin() + std::ptrdiff_t(i + sizeof(T)));
+}
+
+/// Numbers of type T in the file, read into the same or into floats.
+template <class T, class Out>
+std::vector<Out> decode(ByteSource& source, bool big_endian, std::uint64_t count, const std::string& path,
+                        const Run& run) {
+  constexpr bool kConverts = !std::is_same_v<T, Out>;
+  std::vector<Out> values;
+  // Reserved memory is touched only as the data come in.
+  values.reserve(count);
+  std::vector<T> buffer(kConverts ? std::min<std::uint64_t>(count, kChunk) : 0);
+  for (std::uint64_t done = 0; done < count;) {
+    throw_if_stopped(run);
+    const std::size_t wanted = std::min<std::uint64_t>(kChunk, count - done);
+    values.resize(done + wanted);
+    const std::span<Out> out = std::span(values).subspan(done);
+    std::span<std::byte> bytes;
+    if constexpr (kConverts)
+      bytes = std::as_writable_bytes(std::span(buffer).first(wanted));
+    else
+      bytes = std::as_writable_bytes(out);
+    const std::size_t got = source.read(bytes);
+    if (got < bytes.size()) {
+      throw IoError(fmt::format("{}: the data are too short: {} bytes expected, {} found", path, count * sizeof(T),
+                                done * sizeof(T) + got));
+    }
+    if (big_endian && sizeof(T) > 1) swap_bytes<T>(bytes);
+    if constexpr (kConverts)
+      std::transform(buffer.begin(), buffer.begin() + std::ptrdiff_t(wanted), out.begin(),
+                     [](T value) { return float(value); });
+    done += wanted;
+    if (run.progress) run.progress("read", double(done) / double(count));
   }
-  for (std::size_t i = 0; i < count; ++i) {
-    T value;
-    std::memcpy(&value, bytes + i * sizeof(T), sizeof(T));
-    out[i] = float(value);
-  }
+  return values;
 }
 
 template <class T>
@@ -91,46 +119,48 @@ std::uint64_t checked_count(const std::string& path, std::span<const std::int64_
   return count;
 }
 
-std::vector<float> decode_scalars(ByteSource& source, const ScalarLayout& layout, std::uint64_t count,
-                                  const std::string& path, const Run& run) {
-  const std::size_t width = bytes_per_scalar(layout.type);
-  std::vector<float> values;
-  // Reserved memory is touched only as the data come in.
-  values.reserve(count);
-  std::vector<std::byte> bytes(std::min<std::uint64_t>(count, kChunk) * width);
-  for (std::uint64_t done = 0; done < count;) {
-    throw_if_stopped(run);
-    const std::size_t wanted = std::min<std::uint64_t>(kChunk, count - done);
-    const std::size_t got = source.read(std::span(bytes).first(wanted * width));
-    if (got < wanted * width) {
-      throw IoError(fmt::format("{}: the data are too short: {} bytes expected, {} found", path, count * width,
-                                done * width + got));
+AnyValues decode_scalars(ByteSource& source, const ScalarLayout& layout, std::uint64_t count, VoxelForm form,
+                         const std::string& path, const Run& run) {
+  return with_type(layout.type, [&](auto zero) -> AnyValues {
+    using T = decltype(zero);
+    if constexpr (std::is_integral_v<T> && sizeof(T) <= 2) {
+      if (form == VoxelForm::kStored) return decode<T, T>(source, layout.big_endian, count, path, run);
     }
-    values.resize(done + wanted);
-    with_type(layout.type, [&](auto zero) {
-      decode_chunk<decltype(zero)>(bytes.data(), wanted, layout.big_endian, values.data() + done);
-    });
-    done += wanted;
-    if (run.progress) run.progress("read", double(done) / double(count));
-  }
-  return values;
+    return decode<T, float>(source, layout.big_endian, count, path, run);
+  });
 }
 
-void encode_scalars(std::span<const float> values, ScalarType type,
+void append(AnyValues& values, const AnyValues& more) {
+  if (values.index() != more.index() && !std::holds_alternative<std::vector<float>>(values))
+    values = std::visit([](const auto& list) { return std::vector<float>(list.begin(), list.end()); }, values);
+  std::visit(
+      [](auto& list, const auto& behind) {
+        if constexpr (std::is_same_v<decltype(list), std::vector<float>&> ||
+                      std::is_same_v<std::decay_t<decltype(list)>, std::decay_t<decltype(behind)>>)
+          list.insert(list.end(), behind.begin(), behind.end());
+      },
+      values, more);
+}
+
+void encode_scalars(const VolumeView::Voxels& values, ScalarType type,
                     const std::function<void(std::span<const std::byte>)>& sink) {
   const std::size_t width = bytes_per_scalar(type);
-  std::vector<std::byte> bytes(std::min(values.size(), kChunk) * width);
-  for (std::size_t begin = 0; begin < values.size(); begin += kChunk) {
-    const std::size_t count = std::min(kChunk, values.size() - begin);
-    with_type(type, [&](auto zero) {
-      using T = decltype(zero);
-      for (std::size_t i = 0; i < count; ++i) {
-        const T value = encode_one<T>(values[begin + i], begin + i);
-        std::memcpy(bytes.data() + i * sizeof(T), &value, sizeof(T));
-      }
-    });
-    sink(std::span(bytes).first(count * width));
-  }
+  std::visit(
+      [&](const auto& all) {
+        std::vector<std::byte> bytes(std::min(all.size(), kChunk) * width);
+        for (std::size_t begin = 0; begin < all.size(); begin += kChunk) {
+          const std::size_t count = std::min(kChunk, all.size() - begin);
+          with_type(type, [&](auto zero) {
+            using T = decltype(zero);
+            for (std::size_t i = 0; i < count; ++i) {
+              const T value = encode_one<T>(float(all[begin + i]), begin + i);
+              std::memcpy(bytes.data() + i * sizeof(T), &value, sizeof(T));
+            }
+          });
+          sink(std::span(bytes).first(count * width));
+        }
+      },
+      values);
 }
 
 }  // namespace isolux::detail

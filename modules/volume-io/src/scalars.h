@@ -4,11 +4,13 @@
 
 #include <isolux/core/run.h>
 #include <isolux/volume_io/scalar_type.h>
+#include <isolux/volume_io/volume_reader.h>
 
 #include <functional>
 #include <optional>
 #include <span>
 #include <string>
+#include <variant>
 #include <vector>
 
 namespace isolux::detail {
@@ -24,15 +26,22 @@ struct ScalarLayout {
 [[nodiscard]] std::uint64_t checked_count(const std::string& path, std::span<const std::int64_t> sizes,
                                           std::size_t bytes_per_value);
 
-/// Reads `count` numbers and converts each to the nearest float. \throw IoError naming `path` and the bytes expected
-/// and found if there are fewer; Cancelled. Memory follows what was read, not what was promised.
-[[nodiscard]] std::vector<float> decode_scalars(ByteSource& source, const ScalarLayout& layout, std::uint64_t count,
-                                                const std::string& path, const Run& run);
+/// Values in one of the types that StoredVolume holds.
+using AnyValues = std::variant<std::vector<float>, std::vector<std::uint8_t>, std::vector<std::int8_t>,
+                               std::vector<std::uint16_t>, std::vector<std::int16_t>>;
 
-/// Encodes floats in pieces, little endian, and hands each piece on. Values must be representable: whole numbers within
-/// the range of an integer type (its limits as rounded to float are taken as the limits themselves). \throw
-/// InvalidInput naming the first value that is not.
-void encode_scalars(std::span<const float> values, ScalarType type,
+/// Reads `count` numbers, in `form`. \throw IoError naming `path` and the bytes expected and found if there are fewer;
+/// Cancelled. Memory follows what was read, not what was promised.
+[[nodiscard]] AnyValues decode_scalars(ByteSource& source, const ScalarLayout& layout, std::uint64_t count,
+                                       VoxelForm form, const std::string& path, const Run& run);
+
+/// Puts `more` behind `values`: both in floats if their types differ.
+void append(AnyValues& values, const AnyValues& more);
+
+/// Encodes a volume's voxels in pieces, little endian, and hands each piece on. Values must be representable: whole
+/// numbers within the range of an integer type (its limits as rounded to float are taken as the limits themselves).
+/// \throw InvalidInput naming the first value that is not.
+void encode_scalars(const VolumeView::Voxels& values, ScalarType type,
                     const std::function<void(std::span<const std::byte>)>& sink);
 
 }  // namespace isolux::detail

@@ -3,6 +3,7 @@
 #include <isolux/volume_io/read.h>
 #include <openssl/evp.h>
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <memory>
@@ -11,7 +12,7 @@ namespace isolux {
 
 static_assert(std::endian::native == std::endian::little, "the hash is defined over little-endian bytes");
 
-std::string volume_sha256(const Volume& volume) {
+std::string volume_sha256(const VolumeView& volume) {
   const std::unique_ptr<EVP_MD_CTX, decltype(&EVP_MD_CTX_free)> context(EVP_MD_CTX_new(), &EVP_MD_CTX_free);
   const auto require = [](bool good) {
     if (!good) throw Error("libcrypto could not compute a SHA-256");
@@ -32,8 +33,17 @@ std::string volume_sha256(const Volume& volume) {
   };
   add_vector(lattice.frame.origin);
   for (int a = 0; a < 3; ++a) add_vector(lattice.frame.axes[a]);
-  const auto values = volume.values.values();
-  add(values.data(), values.size_bytes());
+  if (const auto* floats = std::get_if<std::span<const float>>(&volume.voxels())) {
+    add(floats->data(), floats->size_bytes());
+  } else {
+    std::array<float, 4096> part{};
+    const std::size_t count = lattice.count();
+    for (std::size_t begin = 0; begin < count; begin += part.size()) {
+      const auto values = std::span(part).first(std::min(part.size(), count - begin));
+      volume.copy(begin, values);
+      add(values.data(), values.size_bytes());
+    }
+  }
   std::array<unsigned char, EVP_MAX_MD_SIZE> digest{};
   unsigned length = 0;
   require(EVP_DigestFinal_ex(context.get(), digest.data(), &length) == 1);

@@ -13,45 +13,44 @@
 namespace isolux {
 namespace {
 
-detail::NrrdImage nrrd_image(const Volume& volume, const WriteOptions& options) {
-  return {.type = volume.stored_type,
+detail::NrrdImage nrrd_image(const VolumeView& volume, const WriteOptions& options) {
+  return {.type = volume.stored_type(),
           .channels = 1,
           .lattice = volume.lattice(),
-          .space = volume.space,
+          .space = volume.space(),
           .key_values = {},
           .compress = options.compress,
           .data_file = {}};
 }
 
-void write_attached(const Volume& volume, const std::string& path, const WriteOptions& options) {
+void write_attached(const VolumeView& volume, const std::string& path, const WriteOptions& options) {
   const auto image = nrrd_image(volume, options);
   write_atomically(path, [&](std::ostream& out) {
     detail::write_nrrd_header(out, image);
-    detail::write_nrrd_values(out, image, volume.values.values());
+    detail::write_nrrd_values(out, image, volume.voxels());
   });
 }
 
-void write_detached(const Volume& volume, const std::string& path, const WriteOptions& options) {
+void write_detached(const VolumeView& volume, const std::string& path, const WriteOptions& options) {
   auto image = nrrd_image(volume, options);
   const std::filesystem::path data =
       std::filesystem::path(path).replace_extension(options.compress ? ".raw.gz" : ".raw");
   image.data_file = data.filename().string();
   // The data first: a header never points to nothing.
-  write_atomically(data.string(),
-                   [&](std::ostream& out) { detail::write_nrrd_values(out, image, volume.values.values()); });
+  write_atomically(data.string(), [&](std::ostream& out) { detail::write_nrrd_values(out, image, volume.voxels()); });
   write_atomically(path, [&](std::ostream& out) { detail::write_nrrd_header(out, image); });
 }
 
-void write_headerless(const Volume& volume, const std::string& path) {
+void write_headerless(const VolumeView& volume, const std::string& path) {
   const auto layout = detail::parse_raw_name(path);
   if (!layout || layout->size != volume.lattice().size) {
     const auto stem = std::filesystem::path(path).stem().string();
-    const RawLayout own{.size = volume.lattice().size, .type = volume.stored_type, .big_endian = false};
+    const RawLayout own{.size = volume.lattice().size, .type = volume.stored_type(), .big_endian = false};
     throw InvalidInput(fmt::format("{}: a headerless file must say its size and type in its name: {}{}", path, stem,
                                    detail::raw_name_end(own)));
   }
   write_atomically(path, [&](std::ostream& out) {
-    detail::encode_scalars(volume.values.values(), layout->type, [&](std::span<const std::byte> bytes) {
+    detail::encode_scalars(volume.voxels(), layout->type, [&](std::span<const std::byte> bytes) {
       out.write(reinterpret_cast<const char*>(bytes.data()), std::streamsize(bytes.size()));
     });
   });
@@ -59,7 +58,7 @@ void write_headerless(const Volume& volume, const std::string& path) {
 
 }  // namespace
 
-void write_volume(const Volume& volume, const std::string& path, const WriteOptions& options) {
+void write_volume(const VolumeView& volume, const std::string& path, const WriteOptions& options) {
   if (detail::has_extension(path, ".nrrd")) return write_attached(volume, path, options);
   if (detail::has_extension(path, ".nhdr")) return write_detached(volume, path, options);
   if (detail::has_extension(path, ".raw")) return write_headerless(volume, path);

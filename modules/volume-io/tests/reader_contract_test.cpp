@@ -85,6 +85,18 @@ TEST_P(ReaderContract, GivesTheSameVolumeOnManyThreads) {
   for (const auto& own : hashes) EXPECT_EQ(own, hash);
 }
 
+TEST_P(ReaderContract, GivesTheSameVolumeInTheFilesType) {
+  const auto path = folder_.write(GetParam().name, GetParam().bytes);
+  const StoredVolume stored = read_stored_volume(path, GetParam().options);
+  // DICOM's library turns what has an intercept into other types.
+  if (stored.stored_type == ScalarType::kInt16) {
+    EXPECT_TRUE(std::holds_alternative<Grid<std::int16_t>>(stored.values));
+  }
+  const Volume floats = read_volume(path, GetParam().options);
+  EXPECT_EQ(stored.stored_type, floats.stored_type);
+  EXPECT_EQ(volume_sha256(stored), volume_sha256(floats));
+}
+
 TEST_P(ReaderContract, StopsWhenAsked) {
   const auto path = folder_.write(GetParam().name, GetParam().bytes);
   std::stop_source stop;

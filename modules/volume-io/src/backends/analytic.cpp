@@ -23,7 +23,8 @@ class AnalyticReader final : public VolumeReader {
     return source.starts_with(kPrefix) ? 3 : 0;
   }
 
-  [[nodiscard]] Volume read(const std::string& source, const ReadOptions& options, const Run& run) const override {
+  [[nodiscard]] StoredVolume read(const std::string& source, const ReadOptions& options,
+                                  const Run& run) const override {
     if (!source.starts_with(kPrefix)) throw InvalidInput(fmt::format("'{}' is not of the form gen:NAME[:N]", source));
     const std::string_view text = std::string_view(source).substr(kPrefix.size());
     const auto colon = text.find(':');
@@ -36,10 +37,10 @@ class AnalyticReader final : public VolumeReader {
             fmt::format("{}: '{}' is no number of points an axis; allowed is 2 to 2048", source, digits));
     }
     Volume volume = sample_analytic_field(text.substr(0, colon), n, run);
-    if (!options.spacing) return volume;
+    if (!options.spacing) return keep_floats(std::move(volume));
     const auto values = volume.values.values();
-    return detail::make_volume(volume.name, volume.lattice(), {values.begin(), values.end()}, volume.stored_type,
-                               volume.space, options);
+    return detail::make_volume(volume.name, volume.lattice(), std::vector<float>(values.begin(), values.end()),
+                               volume.stored_type, volume.space, options);
   }
 };
 

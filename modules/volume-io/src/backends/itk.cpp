@@ -236,7 +236,8 @@ class ItkReader final : public VolumeReader {
     return 0;
   }
 
-  [[nodiscard]] Volume read(const std::string& source, const ReadOptions& options, const Run& run) const override {
+  [[nodiscard]] StoredVolume read(const std::string& source, const ReadOptions& options,
+                                  const Run& run) const override {
     const Plan what = plan(source, options);
     const auto limit = std::chrono::seconds(std::int64_t(std::ceil(options_.time_limit)));
     detail::ReceivedVolume volume;
@@ -246,7 +247,9 @@ class ItkReader final : public VolumeReader {
           itk::MultiThreaderBase::SetGlobalDefaultNumberOfThreads(1);
           what.work(send);
         },
-        [&](detail::ByteSource& received) { volume = detail::receive_volume(received, source, what.size, run); });
+        [&](detail::ByteSource& received) {
+          volume = detail::receive_volume(received, source, what.size, options.form, run);
+        });
     return detail::make_volume(source, volume.header.lattice, std::move(volume.values), volume.header.stored_type,
                                std::string(what.space), options);
   }

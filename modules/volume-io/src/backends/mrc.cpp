@@ -114,11 +114,11 @@ Lattice lattice_of(const std::string& path, const HeaderBytes& header, const std
   return lattice;
 }
 
-std::vector<float> in_xyz_order(std::vector<float> values, const Lattice& lattice, const std::array<int, 3>& order) {
-  if (order == std::array<int, 3>{0, 1, 2}) return values;
-  std::vector<float> sorted(values.size());
+template <class T>
+std::vector<T> sort_axes(const std::vector<T>& values, const Lattice& lattice, const std::array<int, 3>& order) {
+  std::vector<T> sorted(values.size());
   Index3 at(0);
-  for (const float value : values) {
+  for (const T value : values) {
     sorted[lattice.offset(at.x, at.y, at.z)] = value;
     for (const int axis : order) {
       if (++at[axis] < lattice.size[axis]) break;
@@ -126,6 +126,11 @@ std::vector<float> in_xyz_order(std::vector<float> values, const Lattice& lattic
     }
   }
   return sorted;
+}
+
+detail::AnyValues in_xyz_order(detail::AnyValues values, const Lattice& lattice, const std::array<int, 3>& order) {
+  if (order == std::array<int, 3>{0, 1, 2}) return values;
+  return std::visit([&](const auto& list) -> detail::AnyValues { return sort_axes(list, lattice, order); }, values);
 }
 
 /// MRC and CCP4 maps (Cheng et al., "MRC2014", J. Struct. Biol. 192, 2015): axes in any order, cells of any angles.
@@ -143,7 +148,8 @@ class MrcReader final : public VolumeReader {
     return 0;
   }
 
-  [[nodiscard]] Volume read(const std::string& source, const ReadOptions& options, const Run& run) const override {
+  [[nodiscard]] StoredVolume read(const std::string& source, const ReadOptions& options,
+                                  const Run& run) const override {
     const std::uint64_t found = detail::require_file(source);
     std::string bytes = detail::first_bytes(source, kHeaderBytes);
     if (!has_map_mark(bytes))
@@ -161,7 +167,7 @@ class MrcReader final : public VolumeReader {
     const auto order = axis_order(source, header);
     const Lattice lattice = lattice_of(source, header, order, options.spacing.has_value());
     auto values = detail::decode_scalars(*detail::file_source(source, kHeaderBytes + std::uint64_t(extended)),
-                                         {type, header.big_endian()}, count, source, run);
+                                         {type, header.big_endian()}, count, options.form, source, run);
     return detail::make_volume(source, lattice, in_xyz_order(std::move(values), lattice, order), type,
                                "3D-right-handed", options);
   }

@@ -47,12 +47,13 @@ class NrrdReader final : public VolumeReader {
     return detail::has_extension(source, ".nrrd") || detail::has_extension(source, ".nhdr") ? 1 : 0;
   }
 
-  [[nodiscard]] Volume read(const std::string& source, const ReadOptions& options, const Run& run) const override {
+  [[nodiscard]] StoredVolume read(const std::string& source, const ReadOptions& options,
+                                  const Run& run) const override {
     const detail::NrrdHeader header = detail::read_nrrd_header(source, options);
     const auto axes = spatial_axes(header);
     detail::NrrdFrame frame = detail::nrrd_frame(header, axes);
-    return detail::make_volume(source, frame.lattice, detail::read_nrrd_values(header, run), header.layout.type,
-                               std::move(frame.space), options);
+    return detail::make_volume(source, frame.lattice, detail::read_nrrd_values(header, options.form, run),
+                               header.layout.type, std::move(frame.space), options);
   }
 };
 

@@ -23,7 +23,8 @@ class RawReader final : public VolumeReader {
     return detail::has_extension(source, ".raw") ? 1 : 0;
   }
 
-  [[nodiscard]] Volume read(const std::string& source, const ReadOptions& options, const Run& run) const override {
+  [[nodiscard]] StoredVolume read(const std::string& source, const ReadOptions& options,
+                                  const Run& run) const override {
     const std::uint64_t found = detail::require_file(source);
     auto layout = options.raw ? options.raw : detail::parse_raw_name(source);
     if (layout && !options.raw) layout->big_endian = options.big_endian;
@@ -38,8 +39,8 @@ class RawReader final : public VolumeReader {
     if (found != count * width)
       throw IoError(fmt::format("{}: {}x{}x{} voxels of {} are {} bytes, {} found", source, sizes[0], sizes[1],
                                 sizes[2], scalar_type_name(layout->type), count * width, found));
-    auto values =
-        detail::decode_scalars(*detail::file_source(source, 0), {layout->type, layout->big_endian}, count, source, run);
+    auto values = detail::decode_scalars(*detail::file_source(source, 0), {layout->type, layout->big_endian}, count,
+                                         options.form, source, run);
     return detail::make_volume(source, {.size = layout->size, .frame = {}}, std::move(values), layout->type,
                                "3D-right-handed", options);
   }

@@ -4,6 +4,7 @@
 #include <isolux/core/run.h>
 #include <isolux/core/volume.h>
 
+#include <cstdint>
 #include <optional>
 #include <string>
 
@@ -16,12 +17,19 @@ struct RawLayout {
   bool big_endian = false;
 };
 
+/// The type that voxels are read into.
+enum class VoxelForm : std::uint8_t {
+  kFloats,  ///< the nearest float to each
+  kStored   ///< that of the file where it holds whole numbers of 8 or 16 bits; else floats
+};
+
 /// How to read a volume.
 struct ReadOptions {
-  std::optional<RawLayout> raw;      ///< dims, type and endianness of a headerless file
-  bool big_endian = false;           ///< of a headerless file whose name says the rest
-  std::optional<Vec3> spacing;       ///< replaces the file's spacing, world units; needed where a format has none
-  bool allow_external_data = false;  ///< a header may name a data file outside its own folder
+  std::optional<RawLayout> raw;         ///< dims, type and endianness of a headerless file
+  bool big_endian = false;              ///< of a headerless file whose name says the rest
+  std::optional<Vec3> spacing;          ///< replaces the file's spacing, world units; needed where a format has none
+  bool allow_external_data = false;     ///< a header may name a data file outside its own folder
+  VoxelForm form = VoxelForm::kFloats;  ///< set by read_volume and read_stored_volume
 };
 
 /// The volume-io stage: reads one family of formats. Backends are immutable and callable from many threads.
@@ -33,10 +41,11 @@ class VolumeReader {
   /// How sure this reader is that `source` (a path, or `gen:` text) is of its kind: 0 not at all, 1 by its name, 2 by
   /// its content, 3 because the caller says so (`gen:`, ReadOptions::raw).
   [[nodiscard]] virtual int claims(const std::string& source, const ReadOptions& options) const = 0;
-  /// Reads it all, converted to float. Voxels may be NaN or infinite and axes 1 wide, as in the file: see
+  /// Reads it all, in ReadOptions::form. Voxels may be NaN or infinite and axes 1 wide, as in the file: see
   /// require_usable(). \throw IoError if it cannot be opened or is shorter than its header says; InvalidInput for a
   /// header that makes no sense or asks for what is not supported. Every message names the file.
-  [[nodiscard]] virtual Volume read(const std::string& source, const ReadOptions& options, const Run& run) const = 0;
+  [[nodiscard]] virtual StoredVolume read(const std::string& source, const ReadOptions& options,
+                                          const Run& run) const = 0;
 };
 
 /// raw, nrrd, analytic, and itk where it was built.
