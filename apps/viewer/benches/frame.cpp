@@ -95,14 +95,14 @@ struct Subject {
 };
 
 struct Loaded {
-  std::shared_ptr<const Volume> volume;
+  std::shared_ptr<const ViewedVolume> volume;
   std::unique_ptr<SurfaceRenderer> renderer;
   std::size_t triangles = 0;
 };
 
 Loaded load(const Subject& subject) {
   Loaded loaded;
-  loaded.volume = std::make_shared<const Volume>(read_volume(subject.volume));
+  loaded.volume = std::make_shared<const ViewedVolume>(read_volume(subject.volume));
   loaded.renderer = std::make_unique<SurfaceRenderer>(loaded.volume);
   const Surface surface = SurfaceMaker(loaded.volume, isolux::extractors(), {})
                               .make({.isovalue = subject.isovalue, .normals = NormalKind::kGradient}, {}, {});
@@ -138,7 +138,7 @@ IlluminationGrid make_light(const Volume& volume, const Subject& subject, const 
 void frame(benchmark::State& state, Loaded& loaded, const Subject& subject, const Scheme& scheme, double zoom) {
   if (!loaded.volume) loaded = load(subject);
   SurfaceRenderer& renderer = *loaded.renderer;
-  renderer.set_light(make_light(*loaded.volume, subject, scheme));
+  renderer.set_light(make_light(loaded.volume->floats(), subject, scheme));
   SurfaceView view;
   view.aspect = double(kWidth) / kHeight;
   view.camera = orbit_camera(loaded.volume->lattice(), 30.0, 20.0, 1.0);

@@ -122,10 +122,11 @@ void look(const Words& words, const viewer::AppSettings& settings, Session& sess
       {{"VOLUME", words.volume.source()}, {"--light", words.light.path()}, {"--scene", words.scene}});
   const viewer::WindowSystem windows;
   const bool given = !words.volume.source().empty();
-  Volume volume = given ? words.volume.read(session) : read_volume("gen:marschner-lobb", {}, session.run);
+  StoredVolume volume =
+      given ? words.volume.read_stored(session) : read_stored_volume("gen:marschner-lobb", {}, session.run);
   viewer::Document document = viewer::make_document(std::move(volume));
   if (words.light.given())
-    document.light = std::make_shared<const LightFile>(words.light.read(*document.volume, session));
+    document.light = std::make_shared<const LightFile>(words.light.read(document.volume->floats(), session));
   session.timed("view", [&] { viewer::run_app(std::move(document), settings, session.stages); });
 }
 

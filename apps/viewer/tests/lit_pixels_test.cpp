@@ -137,7 +137,7 @@ TEST_P(LitPixels, AgreeWithTheLookUpOnTheProcessor) {
   const test::EglContext context;
   if (!context) GTEST_SKIP() << context.why();
   const auto [at_voxels, channels, detail, bricks, own] = GetParam();
-  const auto volume = std::make_shared<const Volume>(far_ball());
+  const auto volume = std::make_shared<const ViewedVolume>(far_ball());
   const Lattice& lattice = volume->lattice();
   const Index3 cells = bricks ? Index3(62, 53, 49) : Index3(17, 31, 9);
   IlluminationGrid light = varied_light(at_voxels ? voxel_lattice(lattice) : cell_lattice(lattice, cells), channels);
@@ -150,7 +150,8 @@ TEST_P(LitPixels, AgreeWithTheLookUpOnTheProcessor) {
     light.detail.texel_light = TexelLight::kOwn;
     light.detail.slopes.clear();
   }
-  const ExpectedLight expected(*volume, own ? LightReader(*volume, light).offsets() : light, surface.mesh, kIsovalue);
+  const ExpectedLight expected(volume->floats(), own ? LightReader(volume->floats(), light).offsets() : light,
+                               surface.mesh, kIsovalue);
 
   SurfaceRenderer renderer(volume);
   renderer.set_surface(surface.mesh, kIsovalue);

@@ -114,7 +114,7 @@ TEST(SurfaceWorker, UsesTheMemoryOfAMeshThatCameBack) {
 }
 
 TEST(SurfaceMaker, MakesTheSurfaceOfEveryBackend) {
-  const auto volume = std::make_shared<const Volume>(read_volume("gen:sphere:24"));
+  const auto volume = std::make_shared<const ViewedVolume>(read_volume("gen:sphere:24"));
   const Registry<Extractor> registry = extractors();
   for (const BackendInfo& info : registry.backends()) {
     SurfaceMaker maker(volume, registry, {.name = info.name, .settings = {}});
@@ -133,6 +133,24 @@ TEST(SurfaceMaker, MakesTheSurfaceOfEveryBackend) {
       }
     }
   }
+}
+
+TEST(ViewedVolume, MakesFloatsOfANarrowVolumeOnce) {
+  Lattice lattice;
+  lattice.size = Index3(2);
+  const ViewedVolume narrow(StoredVolume{.values = Grid<std::int16_t>(lattice, {1, -2, 3, 4, 5, 6, 7, 800}),
+                                         .name = "narrow",
+                                         .stored_type = ScalarType::kInt16,
+                                         .space = {}});
+  EXPECT_TRUE(std::holds_alternative<std::span<const std::int16_t>>(narrow.stored().voxels()));
+  const Volume& floats = narrow.floats();
+  EXPECT_EQ(&narrow.floats(), &floats);
+  EXPECT_EQ(floats.values(1, 1, 1), 800.0f);
+  EXPECT_EQ(floats.values(1, 0, 0), -2.0f);
+  EXPECT_EQ(floats.name, "narrow");
+  // Floats are not held twice.
+  const ViewedVolume wide(read_volume("gen:sphere:4"));
+  EXPECT_EQ(std::get<std::span<const float>>(wide.stored().voxels()).data(), wide.floats().values.values().data());
 }
 
 TEST(BackgroundTask, HandsOverTheResultOrTheReason) {
@@ -162,13 +180,13 @@ TEST(BackgroundTask, HandsOverTheResultOrTheReason) {
 }
 
 TEST(ExactLight, IsOneOnAConvexSurfaceWithAndWithoutABakedLight) {
-  Document document = make_document(read_volume("gen:sphere:16"));
+  Document document = make_document(read_stored_volume("gen:sphere:16"));
   const std::vector<Vec3f> positions{{0.5f, 0.5f, 0.8f}, {0.3f, 0.5f, 0.5f}};
   Scene dim;
   dim.environment = UniformEnvironment{.radiance = Vec3f(0.5f)};
   const Stages stages = builtin_stages();
   for (const Vec3f& e : trace_surface(document, dim, positions, stages, {}).radiance) EXPECT_EQ(e, Vec3f(0.5f));
-  document.light = std::make_shared<const LightFile>(bake_draft(*document.volume, Scene{}, stages, {}));
+  document.light = std::make_shared<const LightFile>(bake_draft(document.volume->floats(), Scene{}, stages, {}));
   for (const Vec3f& e : trace_surface(document, dim, positions, stages, {}).radiance) {
     EXPECT_NEAR(e.x, 1.0f, 1e-6f) << "the light's own scene counts";
   }

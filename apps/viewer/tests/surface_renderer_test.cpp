@@ -21,7 +21,7 @@ namespace {
 TEST(SurfaceRenderer, FindsTheBricksOfPixelsAtTheEdgesOfTriangles) {
   const test::EglContext context;
   if (!context) GTEST_SKIP() << context.why();
-  const auto volume = std::make_shared<const Volume>(read_volume("gen:sphere:64"));
+  const auto volume = std::make_shared<const ViewedVolume>(read_volume("gen:sphere:64"));
   IlluminationGrid light(cell_lattice(volume->lattice()), 1);
   std::fill(light.values.begin(), light.values.end(), 1.0f);
   light.detail.isovalues = ValueRange{.low = -0.4f, .high = -0.4f};
@@ -56,7 +56,7 @@ TEST(SurfaceRenderer, FindsTheBricksOfPixelsAtTheEdgesOfTriangles) {
 TEST(SurfaceRenderer, ShowsTheHeadlightAndTheSkyWithoutLight) {
   const test::EglContext context;
   if (!context) GTEST_SKIP() << context.why();
-  const auto volume = std::make_shared<const Volume>(read_volume("gen:sphere:32"));
+  const auto volume = std::make_shared<const ViewedVolume>(read_volume("gen:sphere:32"));
   const Lattice& lattice = volume->lattice();
   SurfaceRenderer renderer(volume);
   renderer.set_surface(SurfaceMaker(volume, extractors(), {}).make({.isovalue = -0.4f}, {}, {}).mesh, -0.4f);
@@ -76,7 +76,7 @@ TEST(SurfaceRenderer, ShowsTheHeadlightAndTheSkyWithoutLight) {
 TEST(SurfaceRenderer, ShowsTheInnerSideInItsOwnLight) {
   const test::EglContext context;
   if (!context) GTEST_SKIP() << context.why();
-  const auto volume = std::make_shared<const Volume>(read_volume("gen:sphere:32"));
+  const auto volume = std::make_shared<const ViewedVolume>(read_volume("gen:sphere:32"));
   const Lattice texels = cell_lattice(volume->lattice());
   const auto white = [&](float e) {
     IlluminationGrid light(texels, 1);
@@ -110,7 +110,7 @@ TEST(SurfaceRenderer, ShowsTheInnerSideInItsOwnLight) {
 TEST(SurfaceRenderer, DrawsNothingWhereThereIsNothing) {
   const test::EglContext context;
   if (!context) GTEST_SKIP() << context.why();
-  SurfaceRenderer renderer(std::make_shared<const Volume>(read_volume("gen:sphere:4")));
+  SurfaceRenderer renderer(std::make_shared<const ViewedVolume>(read_volume("gen:sphere:4")));
   Target target;
   renderer.draw({});
   target.read();

@@ -40,10 +40,22 @@ constexpr Subject kSubjects[] = {{"gyroid256", "gen:gyroid:256", 0.1f},
 /// Small surfaces (about 10^5 triangles) in large volumes: what a search has to find. In one place, and everywhere.
 constexpr Subject kSparseSubjects[] = {{"sphere512", "gen:sphere:512", -0.12f}, {"gyroid512", "gen:gyroid:512", 1.49f}};
 
+/// The type that voxels are held in: the file's own (8 bits for engine and bonsai), or floats. Built-in fields have
+/// floats alone.
+enum class Held : std::uint8_t { kAsStored, kInFloats };
+
+struct Voxels {
+  StoredVolume stored;
+  Volume floats;
+  [[nodiscard]] VolumeView view(Held held) const {
+    return held == Held::kAsStored ? VolumeView(stored) : VolumeView(floats);
+  }
+};
+
 /// The volume of a subject, read once; null where its file is not there.
-const Volume* volume_of(const Subject& subject) {
-  static std::map<std::string, std::unique_ptr<Volume>> volumes;
-  std::unique_ptr<Volume>& volume = volumes[subject.name];
+const Voxels* volume_of(const Subject& subject) {
+  static std::map<std::string, std::unique_ptr<Voxels>> volumes;
+  std::unique_ptr<Voxels>& volume = volumes[subject.name];
   if (volume != nullptr) return volume.get();
   std::erase_if(volumes, [&](const auto& other) { return other.second != nullptr; });  // one at a time fits
   std::string source = subject.source;
@@ -52,7 +64,7 @@ const Volume* volume_of(const Subject& subject) {
     if (folder == nullptr) return nullptr;
     source = std::string(folder) + "/" + source;
   }
-  volume = std::make_unique<Volume>(read_volume(source));
+  volume = std::make_unique<Voxels>(Voxels{.stored = read_stored_volume(source), .floats = read_volume(source)});
   return volume.get();
 }
 
@@ -72,13 +84,13 @@ std::size_t triangle_count(const Mesh& mesh) {
 }
 
 template <class Mesh>
-void fresh(benchmark::State& state, const Subject& subject) {
-  const Volume* volume = volume_of(subject);
+void fresh(benchmark::State& state, const Subject& subject, Held held) {
+  const Voxels* volume = volume_of(subject);
   if (volume == nullptr) return state.SkipWithError("ISOLUX_DATA is not set");
   std::size_t triangles = 0;
   for (auto _ : state) {
     Mesh mesh;
-    IsoExtractor(*volume, run_of(state), IsoExtractor::Index::kNone)
+    IsoExtractor(volume->view(held), run_of(state), IsoExtractor::Index::kNone)
         .extract({.isovalue = subject.isovalue}, run_of(state), mesh);
     triangles = triangle_count(mesh);
   }
@@ -86,10 +98,10 @@ void fresh(benchmark::State& state, const Subject& subject) {
 }
 
 template <class Mesh>
-void kept(benchmark::State& state, const Subject& subject, IsoExtractor::Index index) {
-  const Volume* volume = volume_of(subject);
+void kept(benchmark::State& state, const Subject& subject, Held held, IsoExtractor::Index index) {
+  const Voxels* volume = volume_of(subject);
   if (volume == nullptr) return state.SkipWithError("ISOLUX_DATA is not set");
-  IsoExtractor extractor(*volume, run_of(state), index);
+  IsoExtractor extractor(volume->view(held), run_of(state), index);
   Mesh mesh;
   extractor.extract({.isovalue = subject.isovalue}, run_of(state), mesh);
   for (auto _ : state) extractor.extract({.isovalue = subject.isovalue}, run_of(state), mesh);
@@ -113,11 +125,11 @@ void report_sweep(benchmark::State& state, std::size_t triangles) {
       double(kSweep) * 1e-3, benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
 }
 
-void sweep(benchmark::State& state, const Subject& subject, IsoExtractor::Index index) {
-  const Volume* volume = volume_of(subject);
+void sweep(benchmark::State& state, const Subject& subject, Held held, IsoExtractor::Index index) {
+  const Voxels* volume = volume_of(subject);
   if (volume == nullptr) return state.SkipWithError("ISOLUX_DATA is not set");
-  const std::vector<float> isovalues = sweep_isovalues(*volume);
-  IsoExtractor extractor(*volume, run_of(state), index);
+  const std::vector<float> isovalues = sweep_isovalues(volume->floats);
+  IsoExtractor extractor(volume->view(held), run_of(state), index);
   IndexedMesh mesh;
   std::size_t triangles = 0;
   for (auto _ : state) {
@@ -130,36 +142,37 @@ void sweep(benchmark::State& state, const Subject& subject, IsoExtractor::Index 
   report_sweep(state, triangles);
 }
 
-void index_build(benchmark::State& state, const Subject& subject, IsoExtractor::Index index) {
-  const Volume* volume = volume_of(subject);
+void index_build(benchmark::State& state, const Subject& subject, Held held) {
+  const Voxels* volume = volume_of(subject);
   if (volume == nullptr) return state.SkipWithError("ISOLUX_DATA is not set");
-  for (auto _ : state) IsoExtractor(*volume, run_of(state), index);
+  for (auto _ : state) IsoExtractor(volume->view(held), run_of(state));
 }
 
 void accurate_normals(benchmark::State& state, const Subject& subject) {
-  const Volume* volume = volume_of(subject);
+  const Voxels* volume = volume_of(subject);
   if (volume == nullptr) return state.SkipWithError("ISOLUX_DATA is not set");
   IndexedMesh mesh;
-  IsoExtractor(*volume).extract({.isovalue = subject.isovalue}, run_of(state), mesh);
-  for (auto _ : state) set_accurate_normals(*volume, OuterSide::kLower, run_of(state), mesh);
+  IsoExtractor(volume->stored).extract({.isovalue = subject.isovalue}, run_of(state), mesh);
+  for (auto _ : state) set_accurate_normals(volume->stored, OuterSide::kLower, run_of(state), mesh);
   report(state, mesh.triangles.size());
 }
 
 void backend(benchmark::State& state, const Subject& subject, const std::string& name) {
-  const Volume* volume = volume_of(subject);
+  const Voxels* volume = volume_of(subject);
   if (volume == nullptr) return state.SkipWithError("ISOLUX_DATA is not set");
   const auto extractor = extractors().create(name);
   std::size_t triangles = 0;
-  for (auto _ : state) triangles = extractor->extract(*volume, {.isovalue = subject.isovalue}, run_of(state)).n_faces();
+  for (auto _ : state)
+    triangles = extractor->extract(volume->stored, {.isovalue = subject.isovalue}, run_of(state)).n_faces();
   report(state, triangles);
 }
 
 /// OpenMesh's own way, beside an indexed mesh.
 void openmesh_add_face(benchmark::State& state, const Subject& subject) {
-  const Volume* volume = volume_of(subject);
+  const Voxels* volume = volume_of(subject);
   if (volume == nullptr) return state.SkipWithError("ISOLUX_DATA is not set");
   IndexedMesh indexed;
-  IsoExtractor(*volume).extract({.isovalue = subject.isovalue}, run_of(state), indexed);
+  IsoExtractor(volume->stored).extract({.isovalue = subject.isovalue}, run_of(state), indexed);
   for (auto _ : state) {
     IsoMesh mesh;
     mesh.reserve(indexed.positions.size(), 3 * indexed.triangles.size() / 2, indexed.triangles.size());
@@ -210,9 +223,9 @@ class FlyingEdges {
 };
 
 void vtk_flying_edges(benchmark::State& state, const Subject& subject) {
-  const Volume* volume = volume_of(subject);
+  const Voxels* volume = volume_of(subject);
   if (volume == nullptr) return state.SkipWithError("ISOLUX_DATA is not set");
-  const FlyingEdges flying_edges(*volume, int(state.range(0)));
+  const FlyingEdges flying_edges(volume->floats, int(state.range(0)));
   std::size_t triangles = 0;
   for (auto _ : state) triangles = flying_edges.extract(subject.isovalue);
   report(state, triangles);
@@ -220,20 +233,20 @@ void vtk_flying_edges(benchmark::State& state, const Subject& subject) {
 
 /// On bytes, as the file has them: a quarter of the memory.
 void vtk_flying_edges_u8(benchmark::State& state, const Subject& subject) {
-  const Volume* volume = volume_of(subject);
+  const Voxels* volume = volume_of(subject);
   if (volume == nullptr) return state.SkipWithError("ISOLUX_DATA is not set");
-  if (volume->stored_type != ScalarType::kUint8) return state.SkipWithError("not a volume of bytes");
-  const FlyingEdges flying_edges(*volume, int(state.range(0)), FlyingEdges::Values::kByte);
+  if (volume->stored.stored_type != ScalarType::kUint8) return state.SkipWithError("not a volume of bytes");
+  const FlyingEdges flying_edges(volume->floats, int(state.range(0)), FlyingEdges::Values::kByte);
   std::size_t triangles = 0;
   for (auto _ : state) triangles = flying_edges.extract(subject.isovalue);
   report(state, triangles);
 }
 
 void vtk_sweep(benchmark::State& state, const Subject& subject) {
-  const Volume* volume = volume_of(subject);
+  const Voxels* volume = volume_of(subject);
   if (volume == nullptr) return state.SkipWithError("ISOLUX_DATA is not set");
-  const FlyingEdges flying_edges(*volume, int(state.range(0)));
-  const std::vector<float> isovalues = sweep_isovalues(*volume);
+  const FlyingEdges flying_edges(volume->floats, int(state.range(0)));
+  const std::vector<float> isovalues = sweep_isovalues(volume->floats);
   std::size_t triangles = 0;
   for (auto _ : state) {
     triangles = 0;
@@ -255,25 +268,29 @@ void add(const Subject& subject, const std::string& what, auto function) {
 
 using Index = IsoExtractor::Index;
 
+void add_rows(const Subject& subject, Held held, const std::string& as) {
+  add(subject, "indexed_fresh" + as, [held](auto& state, auto& s) { fresh<IndexedMesh>(state, s, held); });
+  add(subject, "half_edges_fresh" + as, [held](auto& state, auto& s) { fresh<IsoMesh>(state, s, held); });
+  add(subject, "index_build" + as, [held](auto& state, auto& s) { index_build(state, s, held); });
+  for (const Index index : {Index::kNone, Index::kBricks}) {
+    const std::string row = (index == Index::kBricks ? "_index" : "") + as;
+    add(subject, "indexed_kept" + row, [=](auto& state, auto& s) { kept<IndexedMesh>(state, s, held, index); });
+    add(subject, "half_edges_kept" + row, [=](auto& state, auto& s) { kept<IsoMesh>(state, s, held, index); });
+    add(subject, "sweep" + row, [=](auto& state, auto& s) { sweep(state, s, held, index); });
+  }
+}
+
 void register_dense(const Subject& subject) {
 #ifdef ISOLUX_BENCH_VTK
   add(subject, "vtk_flying_edges", vtk_flying_edges);
   if (!std::string(subject.source).starts_with("gen:")) add(subject, "vtk_flying_edges_u8", vtk_flying_edges_u8);
   add(subject, "vtk_sweep", vtk_sweep);
 #endif
-  add(subject, "indexed_fresh", fresh<IndexedMesh>);
-  add(subject, "indexed_kept", [](auto& state, auto& s) { kept<IndexedMesh>(state, s, Index::kNone); });
-  add(subject, "indexed_kept_index", [](auto& state, auto& s) { kept<IndexedMesh>(state, s, Index::kBricks); });
-  add(subject, "indexed_kept_bytes", [](auto& state, auto& s) { kept<IndexedMesh>(state, s, Index::kBricksAndBytes); });
-  add(subject, "half_edges_fresh", fresh<IsoMesh>);
-  add(subject, "half_edges_kept", [](auto& state, auto& s) { kept<IsoMesh>(state, s, Index::kNone); });
-  add(subject, "half_edges_kept_index", [](auto& state, auto& s) { kept<IsoMesh>(state, s, Index::kBricks); });
-  add(subject, "half_edges_kept_bytes", [](auto& state, auto& s) { kept<IsoMesh>(state, s, Index::kBricksAndBytes); });
+  for (const Held held : {Held::kAsStored, Held::kInFloats}) {
+    if (held == Held::kInFloats && std::string(subject.source).starts_with("gen:")) continue;
+    add_rows(subject, held, held == Held::kInFloats ? "_floats" : "");
+  }
   add(subject, "accurate_normals", accurate_normals);
-  add(subject, "sweep", [](auto& state, auto& s) { sweep(state, s, Index::kNone); });
-  add(subject, "sweep_index", [](auto& state, auto& s) { sweep(state, s, Index::kBricks); });
-  add(subject, "index_build", [](auto& state, auto& s) { index_build(state, s, Index::kBricks); });
-  add(subject, "index_build_bytes", [](auto& state, auto& s) { index_build(state, s, Index::kBricksAndBytes); });
   add(subject, "openmesh_add_face", openmesh_add_face);
   const Registry<Extractor> registry = extractors();
   for (const BackendInfo& info : registry.backends())
@@ -284,10 +301,7 @@ void register_sparse(const Subject& subject) {
 #ifdef ISOLUX_BENCH_VTK
   add(subject, "vtk_flying_edges", vtk_flying_edges);
 #endif
-  add(subject, "indexed_kept", [](auto& state, auto& s) { kept<IndexedMesh>(state, s, Index::kNone); });
-  add(subject, "indexed_kept_index", [](auto& state, auto& s) { kept<IndexedMesh>(state, s, Index::kBricks); });
-  add(subject, "half_edges_kept_index", [](auto& state, auto& s) { kept<IsoMesh>(state, s, Index::kBricks); });
-  add(subject, "index_build", [](auto& state, auto& s) { index_build(state, s, Index::kBricks); });
+  add_rows(subject, Held::kAsStored, "");
 }
 
 }  // namespace

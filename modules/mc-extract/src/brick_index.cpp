@@ -9,7 +9,7 @@
 
 namespace isolux::mc {
 
-BrickIndex::BrickIndex(const Volume& volume, const Run& run) {
+BrickIndex::BrickIndex(const VolumeView& volume, const Run& run) {
   const Index3 size = volume.lattice().size;
   bricks_ = {(size.x + kWidth - 1) / kWidth, (size.y + kHeight - 1) / kHeight, (size.z + kHeight - 1) / kHeight};
   const std::size_t rows = std::size_t(bricks_.y) * bricks_.z;

@@ -11,7 +11,7 @@ namespace isolux::mc {
 
 /// Smallest and largest value of every brick of 16 x 4 x 4 cells (its grid points on all sides included), of every row
 /// of bricks along x and of every layer of rows: a hierarchy of three levels, so that the bricks of a level set are
-/// found without reading the volume, nor much more than their rows. 1/128 of the volume's memory; made in one pass. A
+/// found without reading the volume, nor much more than their rows. 1/32 of a byte a voxel; made in one pass. A
 /// search by span space (Livnat, Shen & Johnson 1996) would save the rows too, but needs sorting and gives bricks out
 /// of order.
 class BrickIndex {
@@ -20,7 +20,7 @@ class BrickIndex {
   static constexpr int kHeight = 4;  ///< cells along y and z
   static constexpr int kBricksPerWord = 64 / kWidth;
 
-  BrickIndex(const Volume& volume, const Run& run);
+  BrickIndex(const VolumeView& volume, const Run& run);
 
   [[nodiscard]] int rows() const { return bricks_.y; }
   [[nodiscard]] int layers() const { return bricks_.z; }

@@ -12,7 +12,7 @@ namespace {
 /// Slabs of a block: few enough to keep threads busy, many enough for the planes that two blocks make to be few.
 constexpr int kSlabs = 16;
 
-SurfaceBlock build_block(const Volume& volume, const ExtractSettings& settings, SlabRange slabs, const Run& run,
+SurfaceBlock build_block(const VolumeView& volume, const ExtractSettings& settings, SlabRange slabs, const Run& run,
                          const AddCell& add_cell) {
   SurfaceBuilder surface(volume, settings, slabs);
   const Index3 cells = volume.lattice().size - 1;
@@ -46,7 +46,7 @@ std::vector<std::uint32_t> number_vertices(const SurfaceBlock& block, std::uint3
 
 }  // namespace
 
-IndexedMesh build_surface(const Volume& volume, const ExtractSettings& settings, const Run& run,
+IndexedMesh build_surface(const VolumeView& volume, const ExtractSettings& settings, const Run& run,
                           const AddCell& add_cell) {
   const int slabs = volume.lattice().size.z - 1;
   std::vector<SurfaceBlock> blocks(block_count(std::size_t(slabs), kSlabs));

@@ -41,7 +41,7 @@ double turn(const Point2& a, const Point2& b, const Point2& c) {
 
 class BoxCap {
  public:
-  BoxCap(IndexedMesh& mesh, const Volume& volume, const LevelSet& level_set)
+  BoxCap(IndexedMesh& mesh, const VolumeView& volume, const LevelSet& level_set)
       : mesh_(mesh), volume_(volume), lattice_(volume.lattice()), level_set_(level_set) {}
 
   void add() {
@@ -92,9 +92,7 @@ class BoxCap {
     }
   }
 
-  [[nodiscard]] bool inside(const Index3& point) const {
-    return level_set_.inside(volume_.values(point.x, point.y, point.z));
-  }
+  [[nodiscard]] bool inside(const Index3& point) const { return level_set_.inside(volume_(point.x, point.y, point.z)); }
 
   std::uint32_t corner_vertex(const Index3& point) {
     const auto [place, is_new] =
@@ -211,7 +209,7 @@ class BoxCap {
   }
 
   IndexedMesh& mesh_;
-  const Volume& volume_;
+  const VolumeView& volume_;
   const Lattice& lattice_;
   const LevelSet& level_set_;
   std::unordered_map<std::size_t, std::vector<Segment>> segments_;
@@ -220,11 +218,11 @@ class BoxCap {
 
 }  // namespace
 
-void cap_box(IndexedMesh& mesh, const Volume& volume, const LevelSet& level_set) {
+void cap_box(IndexedMesh& mesh, const VolumeView& volume, const LevelSet& level_set) {
   BoxCap(mesh, volume, level_set).add();
 }
 
-void finish_mesh(IndexedMesh& mesh, const Volume& volume, const ExtractSettings& settings, const Run& run) {
+void finish_mesh(IndexedMesh& mesh, const VolumeView& volume, const ExtractSettings& settings, const Run& run) {
   if (settings.cap == CapKind::kBox) cap_box(mesh, volume, LevelSet(volume.lattice(), settings));
   if (settings.normals == NormalKind::kFaces) set_face_normals(mesh);
   if (settings.normals == NormalKind::kAccurate) set_accurate_normals(volume, settings.outer, run, mesh);

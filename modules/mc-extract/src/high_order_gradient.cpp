@@ -37,7 +37,8 @@ constexpr auto kScale = [] {
 
 }  // namespace
 
-struct HighOrderGradient::Weights {
+template <class Value>
+struct HighOrderGradient<Value>::Weights {
   int first;
   int count;
   std::array<double, kLongest> value;
@@ -66,28 +67,32 @@ struct HighOrderGradient::Weights {
   }
   [[nodiscard]] int begin() const { return only < 0 ? 0 : only; }
   [[nodiscard]] int end() const { return only < 0 ? count : only + 1; }
-  [[nodiscard]] double sum_values(const float* values) const {
+  [[nodiscard]] double sum_values(const Value* values) const {
     double sum = 0.0;
     for (int i = begin(); i < end(); ++i) sum += value[i] * values[i];
     return sum;
   }
-  [[nodiscard]] double sum_slopes(const float* values) const {
+  [[nodiscard]] double sum_slopes(const Value* values) const {
     double sum = 0.0;
     for (int i = 0; i < count; ++i) sum += slope[i] * values[i];
     return sum;
   }
 };
 
-HighOrderGradient::HighOrderGradient(const Volume& volume, double tolerance)
-    : field_(volume), size_(volume.lattice().size), tolerance_(tolerance) {}
+template <class Value>
+HighOrderGradient<Value>::HighOrderGradient(const TrilinearFieldOf<Value>& field, double tolerance)
+    : field_(field), size_(field.lattice().size), tolerance_(tolerance) {}
 
-bool HighOrderGradient::is_grid_point(const Vec3& index) const {
+template <class Value>
+bool HighOrderGradient<Value>::is_grid_point(const Vec3& index) const {
   for (int a = 0; a < 3; ++a)
     if (std::fabs(index[a] - std::round(index[a])) > tolerance_) return false;
   return true;
 }
 
-HighOrderGradient::Weights HighOrderGradient::weights(double x, int axis, const Stencil& stencil) const {
+template <class Value>
+typename HighOrderGradient<Value>::Weights HighOrderGradient<Value>::weights(double x, int axis,
+                                                                             const Stencil& stencil) const {
   const int size = size_[axis];
   x = std::clamp(x, 0.0, size - 1.0);
   const double nearest = std::round(x);
@@ -106,7 +111,8 @@ HighOrderGradient::Weights HighOrderGradient::weights(double x, int axis, const 
   return result;
 }
 
-Vec3 HighOrderGradient::gradient(const Vec3& index, const Stencil& stencil) const {
+template <class Value>
+Vec3 HighOrderGradient<Value>::gradient(const Vec3& index, const Stencil& stencil) const {
   const Weights x = weights(index.x, 0, stencil);
   const Weights y = weights(index.y, 1, stencil);
   const Weights z = weights(index.z, 2, stencil);
@@ -123,7 +129,8 @@ Vec3 HighOrderGradient::gradient(const Vec3& index, const Stencil& stencil) cons
   return g;
 }
 
-HighOrderGradient::Smoothness HighOrderGradient::smoothness(const Vec3& index) const {
+template <class Value>
+typename HighOrderGradient<Value>::Smoothness HighOrderGradient<Value>::smoothness(const Vec3& index) const {
   // Mean squares of second, fourth and sixth differences along the three grid lines through the nearest voxel.
   std::array<double, 3> squares{};
   std::array<int, 3> counts{};
@@ -134,7 +141,7 @@ HighOrderGradient::Smoothness HighOrderGradient::smoothness(const Vec3& index) c
     int count = std::min(kLongest, size_[a]);
     Index3 first = nearest;
     first[a] = std::clamp(nearest[a] - kLongest / 2, 0, size_[a] - count);
-    const float* values = field_.data() + field_.lattice().offset(first.x, first.y, first.z);
+    const Value* values = field_.data() + field_.lattice().offset(first.x, first.y, first.z);
     std::array<double, kLongest> line;
     for (int i = 0; i < count; ++i) line[i] = values[std::size_t(i) * steps[a]];
     for (std::size_t order = 1; order <= 6 && count > 1; ++order) {
@@ -151,7 +158,8 @@ HighOrderGradient::Smoothness HighOrderGradient::smoothness(const Vec3& index) c
   return {.first = share(ratio(1)), .second = share(ratio(2))};
 }
 
-std::optional<Vec3> HighOrderGradient::at(const Vec3& index) const {
+template <class Value>
+std::optional<Vec3> HighOrderGradient<Value>::at(const Vec3& index) const {
   const Smoothness smooth = smoothness(index);
   if (smooth.first == 0.0) return std::nullopt;
   Vec3 g(0.0);
@@ -162,5 +170,11 @@ std::optional<Vec3> HighOrderGradient::at(const Vec3& index) const {
   if (!(largest > 0.0 && largest < std::numeric_limits<double>::infinity())) return std::nullopt;
   return g / largest;
 }
+
+template class HighOrderGradient<float>;
+template class HighOrderGradient<std::uint8_t>;
+template class HighOrderGradient<std::int8_t>;
+template class HighOrderGradient<std::uint16_t>;
+template class HighOrderGradient<std::int16_t>;
 
 }  // namespace isolux::mc

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <isolux/core/field.h>
-#include <isolux/core/volume.h>
 
 #include <array>
 #include <optional>
@@ -18,10 +17,11 @@ struct Stencil {
 /// The gradient of the tensor product of interpolating polynomials through the voxels nearest to a point, of an order
 /// as high as the data bear. After Fornberg, "Generation of finite difference formulas on arbitrarily spaced grids"
 /// (1988): on a grid line it is the interpolation of central differences of that order. Callable from many threads.
+template <class Value>
 class HighOrderGradient {
  public:
   /// Coordinates closer than `tolerance` to a grid point's count as its.
-  HighOrderGradient(const Volume& volume, double tolerance);
+  HighOrderGradient(const TrilinearFieldOf<Value>& field, double tolerance);
 
   /// Index space, per index step; none where the data are too rough for more than central differences, or not finite.
   [[nodiscard]] std::optional<Vec3> at(const Vec3& index) const;
@@ -40,7 +40,7 @@ class HighOrderGradient {
   [[nodiscard]] Weights weights(double x, int axis, const Stencil& stencil) const;
   [[nodiscard]] Vec3 gradient(const Vec3& index, const Stencil& stencil) const;
 
-  TrilinearField field_;
+  TrilinearFieldOf<Value> field_;
   Index3 size_;
   double tolerance_;
 };

@@ -14,17 +14,14 @@ namespace isolux {
 
 class IsoExtractor::Implementation {
  public:
-  Implementation(const Volume& volume, const Run& run, Index index) : volume_(&volume), march_(volume) {
-    if (index == Index::kNone) return;
-    index_.emplace(volume, run);
-    if (index != Index::kBricks) march_.keep_bytes(volume, run);
-    if (index == Index::kBricksAndShorts) march_.keep_shorts(volume, run);
+  Implementation(const VolumeView& volume, const Run& run, Index index) : volume_(volume), march_(volume) {
+    if (index == Index::kBricks) index_.emplace(volume, run);
   }
 
   void extract(const ExtractSettings& settings, const Run& asked, IndexedMesh& mesh) {
     const Run run = suited(asked);
     march_.march(settings, run, index(), mesh);
-    mc::finish_mesh(mesh, *volume_, settings, run);
+    mc::finish_mesh(mesh, volume_, settings, run);
   }
 
   void extract(const ExtractSettings& settings, const Run& asked, IsoMesh& mesh) {
@@ -42,7 +39,7 @@ class IsoExtractor::Implementation {
     if (mesh.n_edges() < size.edges) reach = [&](const mc::MeshSize& part) { mc::reach(mesh, part); };
     march_.write(run, reach, memory.positions, memory.normals, memory.connectivity);
     if (settings.normals == NormalKind::kFaces) mc::set_face_normals(mesh);
-    if (settings.normals == NormalKind::kAccurate) set_accurate_normals(*volume_, settings.outer, run, mesh);
+    if (settings.normals == NormalKind::kAccurate) set_accurate_normals(volume_, settings.outer, run, mesh);
   }
 
  private:
@@ -50,17 +47,17 @@ class IsoExtractor::Implementation {
   [[nodiscard]] Run suited(const Run& asked) const {
     constexpr std::size_t kSmall = std::size_t(1) << 15;
     Run run = asked;
-    if (volume_->lattice().count() <= kSmall) run.threads = 1;
+    if (volume_.lattice().count() <= kSmall) run.threads = 1;
     return run;
   }
   [[nodiscard]] const mc::BrickIndex* index() const { return index_ ? &*index_ : nullptr; }
 
-  const Volume* volume_;
+  VolumeView volume_;
   mc::RowMarch march_;
   std::optional<mc::BrickIndex> index_;
 };
 
-IsoExtractor::IsoExtractor(const Volume& volume, const Run& run, Index index)
+IsoExtractor::IsoExtractor(const VolumeView& volume, const Run& run, Index index)
     : implementation_(std::make_unique<Implementation>(volume, run, index)) {}
 IsoExtractor::~IsoExtractor() = default;
 IsoExtractor::IsoExtractor(IsoExtractor&& other) noexcept = default;

@@ -1,11 +1,12 @@
 #pragma once
 
-#include <isolux/core/vec.h>
+#include <isolux/core/volume.h>
 
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <type_traits>
+#include <span>
+#include <variant>
 #include <vector>
 
 #include "level_set.h"
@@ -74,10 +75,7 @@ enum class Connectivity : std::uint8_t {
 
 /// Views of the grid and of the extractor's buffers.
 struct MarchState {
-  const float* values = nullptr;
-  /// The same in one of these where they fit and a copy was made; 64 more may be read.
-  const std::uint8_t* bytes = nullptr;
-  const std::int16_t* shorts = nullptr;
+  VolumeView::Voxels voxels;
   int nx = 0;
   int ny = 0;
   int nz = 0;
@@ -97,16 +95,14 @@ struct MarchState {
   [[nodiscard]] std::uint64_t* row_bits(int j, int k) {
     return bits + (std::size_t(k) * std::size_t(ny) + std::size_t(j)) * std::size_t(words);
   }
-  /// Value: float, or std::uint8_t or std::int16_t where there are bytes or shorts.
+  /// Value: the type of the voxels.
   template <class Value>
   [[nodiscard]] const Value* row_values(int j, int k) const {
-    const std::size_t place = (std::size_t(k) * std::size_t(ny) + std::size_t(j)) * std::size_t(nx);
-    if constexpr (std::is_same_v<Value, std::uint8_t>)
-      return bytes + place;
-    else if constexpr (std::is_same_v<Value, std::int16_t>)
-      return shorts + place;
-    else
-      return values + place;
+    return all_values<Value>().data() + (std::size_t(k) * std::size_t(ny) + std::size_t(j)) * std::size_t(nx);
+  }
+  template <class Value>
+  [[nodiscard]] std::span<const Value> all_values() const {
+    return *std::get_if<std::span<const Value>>(&voxels);
   }
   [[nodiscard]] std::uint32_t* slab_active(int k) const { return active + std::size_t(k) * std::size_t(ny * words); }
   [[nodiscard]] Counts* slab_rows(int k) const { return rows + std::size_t(k) * std::size_t(ny); }

@@ -65,7 +65,7 @@ void require_countable(const MeshSize& size, float isovalue) {
                     isovalue, size.triangles));
 }
 
-RowMarch::RowMarch(const Volume& volume, double dense)
+RowMarch::RowMarch(const VolumeView& volume, double dense)
     : lattice_(volume.lattice()), dense_(dense), slabs_(std::size_t(lattice_.size.z)) {
   const Index3 size = lattice_.size;
   if (std::max(size.x, size.y) > 65536 || std::size_t(size.x) * std::size_t(size.y) > std::size_t(1) << 29)
@@ -73,7 +73,7 @@ RowMarch::RowMarch(const Volume& volume, double dense)
         fmt::format("a volume of {}x{}x{} grid points: marching cubes takes at most 65536 along x and y and "
                     "2^29 a plane",
                     size.x, size.y, size.z));
-  march_.values = volume.values.values().data();
+  march_.voxels = volume.voxels();
   march_.nx = size.x;
   march_.ny = size.y;
   march_.nz = size.z;

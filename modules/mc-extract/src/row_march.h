@@ -29,17 +29,7 @@ class RowMarch {
 
   /// With a share of mixed bricks above `dense` the volume is read whole, index or not.
   /// \throw InvalidInput for volumes whose planes are beyond 32-bit offsets.
-  explicit RowMarch(const Volume& volume, double dense = kDense);
-
-  /// Copies the volume to bytes if all values fit and there is memory, a quarter of the volume's: what is read after
-  /// that, in place of it.
-  void keep_bytes(const Volume& volume, const Run& run);
-  /// The same in 16 bits, half of the volume's memory, where there are no bytes.
-  void keep_shorts(const Volume& volume, const Run& run);
-  /// bytes, shorts or floats.
-  [[nodiscard]] const char* reads() const {
-    return march_.bytes != nullptr ? "bytes" : march_.shorts != nullptr ? "shorts" : "floats";
-  }
+  explicit RowMarch(const VolumeView& volume, double dense = kDense);
 
   /// The whole way, a few layers at a time, so that values and bits are still in the cache where they are used again.
   /// The mesh's memory is used again and grows as needed.
@@ -82,8 +72,6 @@ class RowMarch {
   MarchState march_;
   VertexFrame frame_{};
   bool mirrored_ = false;
-  LargeVector<std::uint8_t> bytes_;
-  LargeVector<std::int16_t> shorts_;
   LargeVector<std::uint64_t> bits_;
   LargeVector<Counts> rows_;
   LargeVector<std::uint32_t> active_;

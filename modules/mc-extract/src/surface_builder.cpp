@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <glm/geometric.hpp>
 #include <limits>
+#include <span>
 #include <utility>
 
 #include "cap_box.h"
@@ -13,20 +14,51 @@ namespace {
 constexpr std::uint32_t kNoVertex = std::numeric_limits<std::uint32_t>::max();
 }
 
-SurfaceBuilder::SurfaceBuilder(const Volume& volume, const ExtractSettings& settings, SlabRange slabs)
+SurfaceBuilder::SurfaceBuilder(const VolumeView& volume, const ExtractSettings& settings, SlabRange slabs)
     : slabs_(slabs),
-      field_(volume),
+      volume_(volume),
+      field_(field_of(volume)),
       lattice_(volume.lattice()),
       level_set_(lattice_, settings),
       gradient_to_world_(lattice_.frame.gradient_to_world()) {
-  for (auto& plane : edge_vertices_) plane.assign(std::size_t(lattice_.size.x) * lattice_.size.y * 8, kNoVertex);
+  const std::size_t points = std::size_t(lattice_.size.x) * lattice_.size.y;
+  for (auto& plane : edge_vertices_) plane.assign(points * 8, kNoVertex);
+  for (auto& plane : inside_) plane.resize(points);
+  classify_plane(slabs.first);
 }
 
-void SurfaceBuilder::begin_slab(int k) { std::ranges::fill(edge_vertices_[(k + 1) & 1], kNoVertex); }
+SurfaceBuilder::Field SurfaceBuilder::field_of(const VolumeView& volume) {
+  return std::visit(
+      [&]<class Value>(std::span<const Value> values) -> Field {
+        return TrilinearFieldOf<Value>(volume.lattice(), values);
+      },
+      volume.voxels());
+}
+
+void SurfaceBuilder::classify_plane(int k) {
+  std::vector<std::uint8_t>& inside = inside_[k & 1];
+  std::visit(
+      [&](const auto& values) {
+        const auto plane = values.subspan(std::size_t(k) * inside.size(), inside.size());
+        std::ranges::transform(plane, inside.begin(),
+                               [&](auto value) { return std::uint8_t(level_set_.inside(float(value))); });
+      },
+      volume_.voxels());
+}
+
+void SurfaceBuilder::begin_slab(int k) {
+  std::ranges::fill(edge_vertices_[(k + 1) & 1], kNoVertex);
+  classify_plane(k + 1);
+}
 
 int SurfaceBuilder::inside_corners(const Index3& cell) const {
+  const std::size_t row = std::size_t(lattice_.size.x);
+  const std::size_t point = std::size_t(cell.y) * row + std::size_t(cell.x);
   int inside = 0;
-  for (int c = 0; c < 8; ++c) inside |= int(level_set_.inside(value(cell + Index3(c & 1, c >> 1 & 1, c >> 2)))) << c;
+  for (int z = 0; z < 2; ++z) {
+    const std::uint8_t* plane = inside_[(cell.z + z) & 1].data() + point;
+    inside |= (plane[0] | plane[1] << 1 | plane[row] << 2 | plane[row + 1] << 3) << (4 * z);
+  }
   return inside;
 }
 
@@ -46,10 +78,14 @@ std::uint32_t SurfaceBuilder::edge_vertex(const Index3& low, int direction) {
   return id;
 }
 
-std::uint32_t SurfaceBuilder::add_vertex(const Vec3& index) { return push(index, field_.cell_gradient(index)); }
+std::uint32_t SurfaceBuilder::add_vertex(const Vec3& index) {
+  return push(index, std::visit([&](const auto& field) { return field.cell_gradient(index); }, field_));
+}
 
 std::uint32_t SurfaceBuilder::push(const Vec3& index, const Vec3& uphill) {
-  Vec3 normal = field_.normal(index, level_set_.outer, GradientKind::kCentralDifferences);
+  Vec3 normal = std::visit(
+      [&](const auto& field) { return field.normal(index, level_set_.outer, GradientKind::kCentralDifferences); },
+      field_);
   const double length = glm::dot(normal, normal);
   if (!(length > 0.5)) {
     const Vec3 outwards = gradient_to_world_ * uphill * (level_set_.outer == OuterSide::kLower ? -1.0 : 1.0);

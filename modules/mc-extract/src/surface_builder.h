@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <functional>
 #include <utility>
+#include <variant>
 #include <vector>
 
 #include "level_set.h"
@@ -36,7 +37,7 @@ struct SlabRange {
 /// backends share. A vertex on a grid edge is made once, whichever cell asks first.
 class SurfaceBuilder {
  public:
-  SurfaceBuilder(const Volume& volume, const ExtractSettings& settings, SlabRange slabs);
+  SurfaceBuilder(const VolumeView& volume, const ExtractSettings& settings, SlabRange slabs);
 
   /// Before the cells between grid planes k and k + 1, in rising order.
   void begin_slab(int k);
@@ -50,20 +51,27 @@ class SurfaceBuilder {
   void add_triangle(std::uint32_t a, std::uint32_t b, std::uint32_t c);
 
   [[nodiscard]] const LevelSet& level_set() const { return level_set_; }
-  [[nodiscard]] float value(const Index3& at) const { return field_.data()[lattice_.offset(at.x, at.y, at.z)]; }
+  [[nodiscard]] float value(const Index3& at) const { return volume_(at.x, at.y, at.z); }
   [[nodiscard]] const Lattice& lattice() const { return lattice_; }
   /// The block so far. Ends the use of the builder.
   [[nodiscard]] SurfaceBlock take() { return std::move(block_); }
 
  private:
+  using Field = std::variant<TrilinearFieldOf<float>, TrilinearFieldOf<std::uint8_t>, TrilinearFieldOf<std::int8_t>,
+                             TrilinearFieldOf<std::uint16_t>, TrilinearFieldOf<std::int16_t>>;
+
+  [[nodiscard]] static Field field_of(const VolumeView& volume);
+  void classify_plane(int k);
   [[nodiscard]] std::uint32_t push(const Vec3& index, const Vec3& uphill);
 
   SlabRange slabs_;
-  TrilinearField field_;
+  VolumeView volume_;
+  Field field_;
   Lattice lattice_;
   LevelSet level_set_;
   Mat3 gradient_to_world_;
-  std::array<std::vector<std::uint32_t>, 2> edge_vertices_;  ///< of two grid planes, 8 directions a point
+  std::array<std::vector<std::uint8_t>, 2> inside_;          ///< of two grid planes, one a point
+  std::array<std::vector<std::uint32_t>, 2> edge_vertices_;  ///< the same, 8 directions a point
   SurfaceBlock block_;
 };
 
@@ -73,7 +81,7 @@ using AddCell = std::function<void(SurfaceBuilder& surface, const Index3& cell, 
 /// The level set of the whole volume, with all that the settings ask for: blocks of slabs in parallel, joined in their
 /// order, so that the result does not depend on threads. `add_cell` is called from many threads, once for every cell
 /// with corners on both sides. \throw Cancelled.
-[[nodiscard]] IndexedMesh build_surface(const Volume& volume, const ExtractSettings& settings, const Run& run,
+[[nodiscard]] IndexedMesh build_surface(const VolumeView& volume, const ExtractSettings& settings, const Run& run,
                                         const AddCell& add_cell);
 
 }  // namespace isolux::mc

@@ -3,6 +3,9 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <span>
+#include <type_traits>
+#include <variant>
 
 #include "wide_kernels.h"
 
@@ -56,14 +59,17 @@ struct Threshold {
   bool inside_below;
 
   Threshold(float isovalue, OuterSide outer) : inside_below(outer == OuterSide::kHigher) {
-    const float first = inside_below ? std::floor(isovalue) + 1.0f : std::ceil(isovalue);
-    lowest = int(std::clamp(first, float(std::numeric_limits<Narrow>::min()), float(kNone)));
+    constexpr float kLeast = std::numeric_limits<Narrow>::min();
+    float first = inside_below ? std::floor(isovalue) + 1.0f : std::ceil(isovalue);
+    // Nothing is inside of what is no number.
+    if (std::isnan(isovalue)) first = inside_below ? kLeast : float(kNone);
+    lowest = int(std::clamp(first, kLeast, float(kNone)));
   }
 };
 
-/// The inside bits of 64 values, of which those beyond `count` are none of the row's.
+/// The inside bits of 64 values.
 template <class Narrow>
-std::uint64_t classify_word(const Narrow* values, int count, const Threshold<Narrow>& threshold) {
+std::uint64_t classify_whole_word(const Narrow* values, const Threshold<Narrow>& threshold) {
   const hn::CappedTag<Narrow, 64 / sizeof(Narrow)> d;
   std::uint64_t word = 0;
   if (threshold.lowest < Threshold<Narrow>::kNone) {
@@ -75,8 +81,21 @@ std::uint64_t classify_word(const Narrow* values, int count, const Threshold<Nar
       word |= bits << i;
     }
   }
-  if (threshold.inside_below) word = ~word;
-  return count < 64 ? word & ((std::uint64_t(1) << count) - 1) : word;
+  return threshold.inside_below ? ~word : word;
+}
+
+/// The inside bits of `count` values or, of more, of 64. The next row's are read with them; the volume's last ones are
+/// copied, as there is nothing behind them.
+template <class Narrow>
+std::uint64_t classify_word(const MarchState& march, const Narrow* values, int count,
+                            const Threshold<Narrow>& threshold) {
+  if (count >= 64) return classify_whole_word(values, threshold);
+  const std::uint64_t own = (std::uint64_t(1) << count) - 1;
+  const std::span<const Narrow> all = march.all_values<Narrow>();
+  if (all.data() + all.size() - values >= 64) return classify_whole_word(values, threshold) & own;
+  Narrow last[64] = {};
+  std::copy_n(values, count, last);
+  return classify_whole_word(last, threshold) & own;
 }
 
 template <class Narrow>
@@ -84,16 +103,25 @@ void classify_narrow_row(MarchState& march, int j, int k) {
   const Threshold<Narrow> threshold(march.isovalue, march.outer);
   const Narrow* values = march.row_values<Narrow>(j, k);
   for (int word = 0; word < march.words; ++word)
-    march.row_bits(j, k)[word] = classify_word(values + 64 * word, march.nx - 64 * word, threshold);
+    march.row_bits(j, k)[word] = classify_word(march, values + 64 * word, march.nx - 64 * word, threshold);
 }
 
-void classify_row_wide(MarchState& march, int j, int k) {
-  if (march.bytes != nullptr) return classify_narrow_row<std::uint8_t>(march, j, k);
-  if (march.shorts != nullptr) return classify_narrow_row<std::int16_t>(march, j, k);
+void classify_float_row(MarchState& march, int j, int k) {
   const float* values = march.row_values<float>(j, k);
   std::uint64_t* bits = march.row_bits(j, k);
   for (int word = 0; word < march.words; ++word)
     bits[word] = classify_word(march, values + 64 * word, std::min(64, march.nx - 64 * word));
+}
+
+void classify_row_wide(MarchState& march, int j, int k) {
+  std::visit(
+      [&]<class Value>(std::span<const Value> /*values*/) {
+        if constexpr (std::is_same_v<Value, float>)
+          classify_float_row(march, j, k);
+        else
+          classify_narrow_row<Value>(march, j, k);
+      },
+      march.voxels);
 }
 
 /// Sets the word's bits in each row: `uniform`, and bits_of(j, k) of the bricks that are read.
@@ -112,13 +140,11 @@ void classify_narrow_bricks(MarchState& march, const BrickRows& rows, int word, 
   for (unsigned left = active; left != 0; left &= left - 1)
     read |= std::uint64_t(0xffff) << (16 * std::countr_zero(left));
   classify_brick_words(march, rows, word, uniform, [&](int j, int k) {
-    return classify_word(march.row_values<Narrow>(j, k) + 64 * word, count, threshold) & read;
+    return classify_word(march, march.row_values<Narrow>(j, k) + 64 * word, count, threshold) & read;
   });
 }
 
-void classify_bricks_wide(MarchState& march, const BrickRows& rows, int word, unsigned active, std::uint64_t uniform) {
-  if (march.bytes != nullptr) return classify_narrow_bricks<std::uint8_t>(march, rows, word, active, uniform);
-  if (march.shorts != nullptr) return classify_narrow_bricks<std::int16_t>(march, rows, word, active, uniform);
+void classify_float_bricks(MarchState& march, const BrickRows& rows, int word, unsigned active, std::uint64_t uniform) {
   const int count = std::min(64, march.nx - 64 * word);
   classify_brick_words(march, rows, word, uniform, [&](int j, int k) {
     const float* values = march.row_values<float>(j, k) + 64 * word;
@@ -131,11 +157,21 @@ void classify_bricks_wide(MarchState& march, const BrickRows& rows, int word, un
   });
 }
 
-void find_range_wide(const Volume& volume, const Index3& first, const Index3& last, float& low, float& high) {
+void classify_bricks_wide(MarchState& march, const BrickRows& rows, int word, unsigned active, std::uint64_t uniform) {
+  std::visit(
+      [&]<class Value>(std::span<const Value> /*values*/) {
+        if constexpr (std::is_same_v<Value, float>)
+          classify_float_bricks(march, rows, word, active, uniform);
+        else
+          classify_narrow_bricks<Value>(march, rows, word, active, uniform);
+      },
+      march.voxels);
+}
+
+void find_float_range(const Lattice& lattice, const float* values, const Index3& first, const Index3& last, float& low,
+                      float& high) {
   const Floats d;
   const int lanes = int(hn::Lanes(d));
-  const Lattice& lattice = volume.lattice();
-  const float* values = volume.values.values().data();
   constexpr float kInfinity = std::numeric_limits<float>::infinity();
   auto lowest = hn::Set(d, kInfinity);
   auto highest = hn::Set(d, -kInfinity);
@@ -169,37 +205,48 @@ void find_range_wide(const Volume& volume, const Index3& first, const Index3& la
   }
 }
 
-/// Whether the values are whole numbers that the narrow type holds, and these.
 template <class Narrow>
-bool to_narrow(const float* values, std::size_t count, Narrow* narrow) {
-  const hn::CappedTag<float, 16> d;
-  const hn::RebindToSigned<decltype(d)> di;
-  const hn::Rebind<Narrow, decltype(d)> dn;
-  auto same = hn::FirstN(di, hn::Lanes(di));
-  std::size_t i = 0;
-  for (; i + hn::Lanes(d) <= count; i += hn::Lanes(d)) {
-    const auto value = hn::LoadU(d, values + i);
-    const auto whole = hn::DemoteTo(dn, hn::ConvertTo(di, value));
-    hn::StoreU(whole, dn, narrow + i);
-    // Bit by bit, so that -0 is none.
-    const auto back = hn::ConvertTo(d, hn::PromoteTo(di, whole));
-    same = hn::And(same, hn::Eq(hn::BitCast(di, back), hn::BitCast(di, value)));
+void find_narrow_range(const Lattice& lattice, const Narrow* values, const Index3& first, const Index3& last,
+                       float& low, float& high) {
+  const hn::CappedTag<Narrow, 16> d;
+  const int lanes = int(hn::Lanes(d));
+  auto lowest = hn::Set(d, std::numeric_limits<Narrow>::max());
+  auto highest = hn::Set(d, std::numeric_limits<Narrow>::min());
+  Narrow least = std::numeric_limits<Narrow>::max();
+  Narrow most = std::numeric_limits<Narrow>::min();
+  const int count = last.x - first.x + 1;
+  for (int k = first.z; k <= last.z; ++k) {
+    for (int j = first.y; j <= last.y; ++j) {
+      const Narrow* row = values + lattice.offset(first.x, j, k);
+      int i = 0;
+      for (; i + lanes <= count; i += lanes) {
+        const auto value = hn::LoadU(d, row + i);
+        lowest = hn::Min(lowest, value);
+        highest = hn::Max(highest, value);
+      }
+      for (; i < count; ++i) {
+        least = std::min(least, row[i]);
+        most = std::max(most, row[i]);
+      }
+    }
   }
-  bool all = hn::AllTrue(di, same);
-  for (; i < count && all; ++i) {
-    all = values[i] >= float(std::numeric_limits<Narrow>::min()) &&
-          values[i] <= float(std::numeric_limits<Narrow>::max());
-    if (all) narrow[i] = Narrow(values[i]);
-    all = all && std::bit_cast<std::uint32_t>(float(narrow[i])) == std::bit_cast<std::uint32_t>(values[i]);
-  }
-  return all;
+  HWY_ALIGN Narrow lows[16];
+  HWY_ALIGN Narrow highs[16];
+  hn::Store(lowest, d, lows);
+  hn::Store(highest, d, highs);
+  low = float(std::min(least, *std::min_element(lows, lows + lanes)));
+  high = float(std::max(most, *std::max_element(highs, highs + lanes)));
 }
 
-bool to_bytes_wide(const float* values, std::size_t count, std::uint8_t* bytes) {
-  return to_narrow(values, count, bytes);
-}
-bool to_shorts_wide(const float* values, std::size_t count, std::int16_t* shorts) {
-  return to_narrow(values, count, shorts);
+void find_range_wide(const VolumeView& volume, const Index3& first, const Index3& last, float& low, float& high) {
+  std::visit(
+      [&]<class Value>(std::span<const Value> values) {
+        if constexpr (std::is_same_v<Value, float>)
+          find_float_range(volume.lattice(), values.data(), first, last, low, high);
+        else
+          find_narrow_range(volume.lattice(), values.data(), first, last, low, high);
+      },
+      volume.voxels());
 }
 
 }  // namespace
@@ -213,8 +260,6 @@ namespace isolux::mc {
 HWY_EXPORT(classify_row_wide);
 HWY_EXPORT(classify_bricks_wide);
 HWY_EXPORT(find_range_wide);
-HWY_EXPORT(to_bytes_wide);
-HWY_EXPORT(to_shorts_wide);
 
 void classify_row(MarchState& march, int j, int k) { HWY_DYNAMIC_DISPATCH(classify_row_wide)(march, j, k); }
 
@@ -222,16 +267,8 @@ void classify_bricks(MarchState& march, const BrickRows& rows, int word, unsigne
   HWY_DYNAMIC_DISPATCH(classify_bricks_wide)(march, rows, word, active, uniform);
 }
 
-void find_range(const Volume& volume, const Index3& first, const Index3& last, float& low, float& high) {
+void find_range(const VolumeView& volume, const Index3& first, const Index3& last, float& low, float& high) {
   HWY_DYNAMIC_DISPATCH(find_range_wide)(volume, first, last, low, high);
-}
-
-bool to_bytes(const float* values, std::size_t count, std::uint8_t* bytes) {
-  return HWY_DYNAMIC_DISPATCH(to_bytes_wide)(values, count, bytes);
-}
-
-bool to_shorts(const float* values, std::size_t count, std::int16_t* shorts) {
-  return HWY_DYNAMIC_DISPATCH(to_shorts_wide)(values, count, shorts);
 }
 
 }  // namespace isolux::mc

@@ -27,12 +27,7 @@ void classify_bricks(MarchState& march, const BrickRows& rows, int word, unsigne
 
 /// Smallest and largest value of the grid points first to last, both included, at most 17 along x; -inf and inf where
 /// one of them is NaN.
-void find_range(const Volume& volume, const Index3& first, const Index3& last, float& low, float& high);
-
-/// Copies values that are whole numbers from 0 to 255, none of them -0, to bytes; false if one is not.
-[[nodiscard]] bool to_bytes(const float* values, std::size_t count, std::uint8_t* bytes);
-/// The same with whole numbers from -32768 to 32767.
-[[nodiscard]] bool to_shorts(const float* values, std::size_t count, std::int16_t* shorts);
+void find_range(const VolumeView& volume, const Index3& first, const Index3& last, float& low, float& high);
 
 /// Finds the words of slab k that hold anything, among `candidates` (packed, rising) or all if there are
 /// none given, and counts what its rows hold.

@@ -1,5 +1,8 @@
 #include <algorithm>
 #include <cstring>
+#include <span>
+#include <type_traits>
+#include <variant>
 
 #include "edge_values.h"
 #include "wide_kernels.h"
@@ -38,40 +41,51 @@ HWY_INLINE F one(const float* values) { return hn::LoadU(kF, values); }
 HWY_INLINE void two(const float* values, F& a, F& b) { hn::LoadInterleaved2(kF, values, a, b); }
 HWY_INLINE void four(const float* values, F& a, F& b, F& c, F& d) { hn::LoadInterleaved4(kF, values, a, b, c, d); }
 
-HWY_INLINE F low_byte(I v) { return hn::ConvertTo(kF, hn::And(v, hn::Set(kI, 255))); }
-HWY_INLINE F one(const std::uint8_t* values) {
-  return hn::ConvertTo(kF, hn::PromoteTo(kI, hn::LoadU(hn::Rebind<std::uint8_t, Ints>(), values)));
-}
-HWY_INLINE void two(const std::uint8_t* values, F& a, F& b) {
-  const hn::Rebind<std::uint16_t, Ints> d16;
-  const I pairs = hn::PromoteTo(kI, hn::LoadU(d16, reinterpret_cast<const std::uint16_t*>(values)));
-  a = low_byte(pairs);
-  b = low_byte(hn::ShiftRight<8>(pairs));
-}
-HWY_INLINE void four(const std::uint8_t* values, F& a, F& b, F& c, F& d) {
-  const I fours = hn::LoadU(kI, reinterpret_cast<const std::int32_t*>(values));
-  a = low_byte(fours);
-  b = low_byte(hn::ShiftRight<8>(fours));
-  c = low_byte(hn::ShiftRight<16>(fours));
-  d = low_byte(hn::ShiftRight<24>(fours));
+/// Byte kByte of each lane, signed or not.
+template <class Byte, int kByte>
+HWY_INLINE F byte_of(I v) {
+  if constexpr (std::is_signed_v<Byte>)
+    return hn::ConvertTo(kF, hn::ShiftRight<24>(hn::ShiftLeft<24 - 8 * kByte>(v)));
+  else
+    return hn::ConvertTo(kF, hn::And(hn::ShiftRight<8 * kByte>(v), hn::Set(kI, 255)));
 }
 
-using Shorts = hn::Rebind<std::int16_t, Ints>;
-HWY_INLINE F widened(hn::Vec<Shorts> v) { return hn::ConvertTo(kF, hn::PromoteTo(kI, v)); }
-HWY_INLINE F one(const std::int16_t* values) { return widened(hn::LoadU(Shorts(), values)); }
-HWY_INLINE void two(const std::int16_t* values, F& a, F& b) {
-  hn::Vec<Shorts> v[2];
-  hn::LoadInterleaved2(Shorts(), values, v[0], v[1]);
-  a = widened(v[0]);
-  b = widened(v[1]);
+template <class Narrow>
+HWY_INLINE F one(const Narrow* values) {
+  return hn::ConvertTo(kF, hn::PromoteTo(kI, hn::LoadU(hn::Rebind<Narrow, Ints>(), values)));
 }
-HWY_INLINE void four(const std::int16_t* values, F& a, F& b, F& c, F& d) {
-  hn::Vec<Shorts> v[4];
-  hn::LoadInterleaved4(Shorts(), values, v[0], v[1], v[2], v[3]);
-  a = widened(v[0]);
-  b = widened(v[1]);
-  c = widened(v[2]);
-  d = widened(v[3]);
+template <class Narrow>
+HWY_INLINE void two(const Narrow* values, F& a, F& b) {
+  if constexpr (sizeof(Narrow) == 1) {
+    const hn::Rebind<std::uint16_t, Ints> d16;
+    const I pairs = hn::PromoteTo(kI, hn::LoadU(d16, reinterpret_cast<const std::uint16_t*>(values)));
+    a = byte_of<Narrow, 0>(pairs);
+    b = byte_of<Narrow, 1>(pairs);
+  } else {
+    const hn::Rebind<Narrow, Ints> d16;
+    hn::Vec<decltype(d16)> v[2];
+    hn::LoadInterleaved2(d16, values, v[0], v[1]);
+    a = hn::ConvertTo(kF, hn::PromoteTo(kI, v[0]));
+    b = hn::ConvertTo(kF, hn::PromoteTo(kI, v[1]));
+  }
+}
+template <class Narrow>
+HWY_INLINE void four(const Narrow* values, F& a, F& b, F& c, F& d) {
+  if constexpr (sizeof(Narrow) == 1) {
+    const I fours = hn::LoadU(kI, reinterpret_cast<const std::int32_t*>(values));
+    a = byte_of<Narrow, 0>(fours);
+    b = byte_of<Narrow, 1>(fours);
+    c = byte_of<Narrow, 2>(fours);
+    d = byte_of<Narrow, 3>(fours);
+  } else {
+    const hn::Rebind<Narrow, Ints> d16;
+    hn::Vec<decltype(d16)> v[4];
+    hn::LoadInterleaved4(d16, values, v[0], v[1], v[2], v[3]);
+    a = hn::ConvertTo(kF, hn::PromoteTo(kI, v[0]));
+    b = hn::ConvertTo(kF, hn::PromoteTo(kI, v[1]));
+    c = hn::ConvertTo(kF, hn::PromoteTo(kI, v[2]));
+    d = hn::ConvertTo(kF, hn::PromoteTo(kI, v[3]));
+  }
 }
 
 /// The edges of one slab along kAxis, a vector at a time.
@@ -226,8 +240,7 @@ class VertexMaker {
 };
 
 template <class Value>
-HWY_INLINE void make_vertices_from(const MarchState& march, int k, const VertexFrame& frame, float* positions,
-                                   float* normals) {
+void make_vertices_from(const MarchState& march, int k, const VertexFrame& frame, float* positions, float* normals) {
   const Slab& slab = march.slabs[k];
   const auto at = [](float* first, std::uint32_t vertex) { return first + 3 * std::size_t(vertex); };
   EdgeBatch along_x(at(positions, slab.first.vertex_x), at(normals, slab.first.vertex_x));
@@ -261,12 +274,9 @@ HWY_INLINE void make_vertices_from(const MarchState& march, int k, const VertexF
 }
 
 void make_vertices_wide(const MarchState& march, int k, const VertexFrame& frame, float* positions, float* normals) {
-  if (march.bytes != nullptr)
-    make_vertices_from<std::uint8_t>(march, k, frame, positions, normals);
-  else if (march.shorts != nullptr)
-    make_vertices_from<std::int16_t>(march, k, frame, positions, normals);
-  else
-    make_vertices_from<float>(march, k, frame, positions, normals);
+  std::visit([&]<class Value>(
+                 std::span<const Value> /*values*/) { make_vertices_from<Value>(march, k, frame, positions, normals); },
+             march.voxels);
 }
 
 }  // namespace

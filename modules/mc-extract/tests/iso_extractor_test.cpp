@@ -1,21 +1,18 @@
 // The fast marching cubes against the plain one, and its index, buffers and instruction sets against each other.
 #include <gtest/gtest.h>
-#include <hwy/targets.h>
 #include <isolux/core/error.h>
 #include <isolux/mc_extract.h>
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <tuple>
-#include <utility>
 
 #include "build_mesh.h"
 #include "fields.h"
+#include "instruction_sets.h"
 #include "mesh_laws.h"
 #include "plain_marching_cubes.h"
 #include "row_march.h"
-#include "wide_kernels.h"
 
 namespace isolux {
 namespace {
@@ -27,10 +24,6 @@ IndexedMesh indexed(const Volume& volume, const ExtractSettings& settings,
   IndexedMesh mesh;
   IsoExtractor(volume, {}, index).extract(settings, {}, mesh);
   return mesh;
-}
-
-bool identical(const IndexedMesh& a, const IndexedMesh& b) {
-  return a.positions == b.positions && a.normals == b.normals && a.triangles == b.triangles;
 }
 
 /// A triangle by its corners' places to 1/64 of a grid step and smaller, the smallest first: alike for two numberings.
@@ -130,7 +123,7 @@ TEST(IsoExtractor, GivesTheSameWithAndWithoutTheIndex) {
         IsoMesh d;
         with.extract(settings, {}, c);
         without.extract(settings, {}, d);
-        EXPECT_TRUE(isolux::testing::identical(c, d)) << part;
+        EXPECT_TRUE(identical(c, d)) << part;
         EXPECT_TRUE(is_manifold(c)) << part;
       }
     }
@@ -146,7 +139,7 @@ TEST(IsoExtractor, UsesAMeshAgainWithoutATrace) {
     const ExtractSettings settings{.isovalue = isovalue};
     extractor.extract(settings, {}, kept);
     extractor.extract(settings, {}, kept_indexed);
-    EXPECT_TRUE(isolux::testing::identical(kept, extractors().create("marching_cubes")->extract(volume, settings, {})));
+    EXPECT_TRUE(identical(kept, extractors().create("marching_cubes")->extract(volume, settings, {})));
     EXPECT_TRUE(identical(kept_indexed, indexed(volume, settings)));
     EXPECT_TRUE(is_manifold(kept));
   }
@@ -164,7 +157,7 @@ TEST(IsoExtractor, WritesOverAMeshThatIsTooSmall) {
       extractor.extract({.isovalue = 0.1f}, {.threads = threads}, expected);
       ASSERT_LT(kept.n_vertices(), expected.n_vertices());
       extractor.extract({.isovalue = 0.1f}, {.threads = threads}, kept);
-      EXPECT_TRUE(isolux::testing::identical(kept, expected)) << small;
+      EXPECT_TRUE(identical(kept, expected)) << small;
     }
   }
 }
@@ -197,81 +190,15 @@ void on_every_instruction_set(const Body& body) {
 }
 
 TEST(IsoExtractor, GivesTheSameBitsOnEveryInstructionSet) {
-  // Rows of less and of more than a word, and of several vectors' words; floats, and whole numbers that are kept as
-  // bytes or in 16 bits.
+  // Rows of less and of more than a word, and of several vectors' words.
   for (const Volume& volume :
-       {noise(Index3(75, 20, 13), 21), noise(Index3(75, 20, 13), 22, 256), noise(Index3(60, 9, 5), 23, 3),
-        noise(Index3(75, 20, 13), 25, 5000), noise(Index3(600, 5, 4), 24)}) {
+       {noise(Index3(75, 20, 13), 21), noise(Index3(60, 9, 5), 23, 3), noise(Index3(600, 5, 4), 24)}) {
     const ExtractSettings settings{.isovalue = volume.values(0, 0, 0)};
-    for (const IsoExtractor::Index index :
-         {IsoExtractor::Index::kBricks, IsoExtractor::Index::kBricksAndBytes, IsoExtractor::Index::kBricksAndShorts}) {
+    for (const IsoExtractor::Index index : {IsoExtractor::Index::kBricks, IsoExtractor::Index::kNone}) {
       const IndexedMesh expected = indexed(volume, settings, index);
       on_every_instruction_set([&] { EXPECT_TRUE(identical(expected, indexed(volume, settings, index))); });
     }
   }
-}
-
-TEST(IsoExtractor, ReadsBytesShortsAndFloatsAlike) {
-  Volume bytes = noise(Index3(130, 21, 17), 5, 256);
-  Volume shorts = noise(Index3(130, 21, 17), 5, 65536);
-  for (float& value : shorts.values.values()) value -= 32768.0f;
-  for (const Volume* volume : {&bytes, &shorts}) {
-    const float low = volume == &bytes ? 0.0f : -32768.0f;
-    const float high = volume == &bytes ? 255.0f : 32767.0f;
-    IsoExtractor narrow(*volume, {}, IsoExtractor::Index::kBricksAndShorts);
-    IsoExtractor floats(*volume, {}, IsoExtractor::Index::kNone);
-    for (const OuterSide outer : {OuterSide::kLower, OuterSide::kHigher}) {
-      for (const float isovalue : {-1e30f, low - 1.0f, low, low + 0.5f, low + 1.0f, 127.0f, 127.25f, high - 0.5f, high,
-                                   high + 0.5f, high + 1.0f, 1e30f}) {
-        const ExtractSettings settings{.isovalue = isovalue, .outer = outer};
-        IndexedMesh a;
-        IndexedMesh b;
-        narrow.extract(settings, {}, a);
-        floats.extract(settings, {}, b);
-        EXPECT_TRUE(identical(a, b)) << isovalue;
-      }
-    }
-  }
-}
-
-TEST(RowMarch, KeepsTheNarrowestCopyThatFits) {
-  Volume bytes = noise(Index3(40, 5, 6), 5, 256);
-  Volume shorts = bytes;
-  shorts.values(3, 2, 1) = -1.0f;
-  Volume floats = shorts;
-  floats.values(4, 2, 1) = 0.5f;
-  for (const auto& [volume, expected] : {std::pair(&bytes, "bytes"), {&shorts, "shorts"}, {&floats, "floats"}}) {
-    mc::RowMarch march(*volume);
-    march.keep_bytes(*volume, {});
-    march.keep_shorts(*volume, {});
-    EXPECT_STREQ(march.reads(), expected);
-  }
-}
-
-template <class Narrow>
-void expect_exact_copies(float low, float high, const auto& convert) {
-  std::vector<float> values(1000);
-  for (std::size_t i = 0; i < values.size(); ++i)
-    values[i] = i % 2 == 0 ? low + float(i) / 8.0f : high - std::floor(float(i) / 8.0f);
-  for (float& value : values) value = std::floor(value);
-  std::vector<Narrow> narrow(values.size());
-  on_every_instruction_set([&] {
-    ASSERT_TRUE(convert(values.data(), values.size(), narrow.data()));
-    for (std::size_t i = 0; i < values.size(); ++i) ASSERT_EQ(float(narrow[i]), values[i]);
-    for (const std::size_t place : {std::size_t(0), std::size_t(17), values.size() - 1}) {
-      for (const float other : {-0.0f, low - 1.0f, high + 1.0f, 0.5f, 1e-30f, 3e9f, -3e9f,
-                                std::numeric_limits<float>::infinity(), std::numeric_limits<float>::quiet_NaN()}) {
-        std::vector<float> changed = values;
-        changed[place] = other;
-        EXPECT_FALSE(convert(changed.data(), changed.size(), narrow.data())) << other << " at " << place;
-      }
-    }
-  });
-}
-
-TEST(WideKernels, CopyOnlyWhatANarrowTypeHolds) {
-  expect_exact_copies<std::uint8_t>(0.0f, 255.0f, mc::to_bytes);
-  expect_exact_copies<std::int16_t>(-32768.0f, 32767.0f, mc::to_shorts);
 }
 
 TEST(IsoExtractor, RefusesPlanesBeyondThirtyTwoBits) {

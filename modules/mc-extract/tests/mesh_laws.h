@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 #include <isolux/core/volume.h>
+#include <isolux/mc_extract/indexed_mesh.h>
 #include <isolux/mc_extract/iso_mesh.h>
 
 #include <OpenMesh/Tools/Utils/MeshCheckerT.hh>
@@ -116,6 +117,10 @@ inline ::testing::AssertionResult normals_are_unit(const IsoMesh& mesh) {
       return ::testing::AssertionFailure()
              << "normal of vertex " << v.idx() << " has length " << glm::length(normal(mesh, v));
   return ::testing::AssertionSuccess();
+}
+
+inline bool identical(const IndexedMesh& a, const IndexedMesh& b) {
+  return a.positions == b.positions && a.normals == b.normals && a.triangles == b.triangles;
 }
 
 /// Same half-edges, same bits of points and normals.

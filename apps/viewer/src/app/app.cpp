@@ -58,7 +58,7 @@ class App final : public WindowListener {
   void on_drop(const std::string& path) override {
     dirty_ = true;
     try {
-      Volume volume = read_volume(path, {}, settings_.viewer.run, stages_.readers);
+      StoredVolume volume = read_stored_volume(path, {}, settings_.viewer.run, stages_.readers);
       require_usable(volume);
       viewer_.open(make_document(std::move(volume)));
     } catch (const Error& error) {

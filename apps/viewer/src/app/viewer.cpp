@@ -39,7 +39,7 @@ void Viewer::start(Document document) {
   document_ = std::move(document);
   shown_ = {};
   message_.clear();
-  const std::shared_ptr<const Volume> volume = document_.volume;
+  const std::shared_ptr<const ViewedVolume> volume = document_.volume;
   const Lattice& lattice = volume->lattice();
   renderer_ = std::make_unique<SurfaceRenderer>(volume);
   layout_ = Layout::kLocal;
@@ -162,7 +162,7 @@ void Viewer::start_bake() {
   bake_ = std::make_unique<BackgroundTask<LightFile>>(
       run,
       [volume = document_.volume, scene = settings_.scene, &stages = stages_](const Run& watched) {
-        return bake_draft(*volume, scene, stages, watched);
+        return bake_draft(volume->floats(), scene, stages, watched);
       },
       wake_);
 }
@@ -188,7 +188,7 @@ void Viewer::start_exact_light() {
 }
 
 void Viewer::export_shown() {
-  const std::string path = free_file_name(document_.volume->name, slider_->value(), "ply");
+  const std::string path = free_file_name(document_.volume->name(), slider_->value(), "ply");
   try {
     export_surface(document_, stages_, settings_.extractor,
                    {.isovalue = float(slider_->value()), .outer = outer_, .normals = NormalKind::kGradient},
@@ -293,7 +293,7 @@ bool Viewer::settled() const {
 
 std::optional<std::string> Viewer::take_screenshot_request() {
   if (!std::exchange(screenshot_, false)) return std::nullopt;
-  return free_file_name(document_.volume->name, slider_->value(), "png");
+  return free_file_name(document_.volume->name(), slider_->value(), "png");
 }
 
 }  // namespace isolux::viewer

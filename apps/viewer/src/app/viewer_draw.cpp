@@ -53,7 +53,7 @@ std::string in_words(const LightMemory& memory) {
 
 std::string Viewer::title() const {
   return fmt::format("isolux - {} - isovalue {:.5g} - {} triangles in {:.0f} ms - drawn in {:.1f} ms{}",
-                     short_name(document_.volume->name), slider_->value(),
+                     short_name(document_.volume->name()), slider_->value(),
                      grouped(shown_.surface.mesh.triangles.size()), 1e3 * shown_.surface.seconds, 1e3 * draw_seconds_,
                      in_words(renderer_->light_memory()));
 }

@@ -40,7 +40,7 @@ std::size_t bytes(const Values& values) {
 
 }  // namespace
 
-SurfaceRenderer::SurfaceRenderer(std::shared_ptr<const Volume> volume)
+SurfaceRenderer::SurfaceRenderer(std::shared_ptr<const ViewedVolume> volume)
     : volume_(std::move(volume)),
       centre_(box_middle(volume_->lattice())),
       radius_(box_radius(volume_->lattice())),
@@ -82,13 +82,13 @@ SurfaceRenderer::Light::Light(const Volume& volume, const IlluminationGrid& ligh
 }
 
 void SurfaceRenderer::set_light(const IlluminationGrid& light) {
-  light_.emplace(*volume_, light, Light::Side::kOuter);
+  light_.emplace(volume_->floats(), light, Light::Side::kOuter);
   inner_light_.reset();
   set_exact_light({});
 }
 
 void SurfaceRenderer::set_inner_light(const IlluminationGrid& light) {
-  inner_light_.emplace(*volume_, light, Light::Side::kInner);
+  inner_light_.emplace(volume_->floats(), light, Light::Side::kInner);
 }
 
 void SurfaceRenderer::set_exact_light(std::span<const Vec3f> radiance) {

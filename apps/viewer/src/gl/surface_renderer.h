@@ -9,6 +9,7 @@
 
 #include "gl/light_textures.h"
 #include "gl/objects.h"
+#include "model/viewed_volume.h"
 #include "ui/panes.h"
 
 namespace isolux::viewer {
@@ -30,7 +31,7 @@ struct SurfaceView {
 class SurfaceRenderer {
  public:
   /// Needs a current OpenGL 3.3 core context, as all that follows. \throw GlError
-  explicit SurfaceRenderer(std::shared_ptr<const Volume> volume);
+  explicit SurfaceRenderer(std::shared_ptr<const ViewedVolume> volume);
 
   /// The level set of `isovalue`. \throw GlError if OpenGL has no memory for it
   void set_surface(const IndexedMesh& mesh, float isovalue);
@@ -77,7 +78,7 @@ class SurfaceRenderer {
   /// e or what the near field adds to it: what the vertex shader hands on.
   void hand_on(const Buffer& values) const;
 
-  std::shared_ptr<const Volume> volume_;
+  std::shared_ptr<const ViewedVolume> volume_;
   Vec3f centre_;
   double radius_ = 0.0;
   ShaderProgram local_;

@@ -15,10 +15,10 @@
 
 namespace isolux::viewer {
 
-Document make_document(Volume volume) {
+Document make_document(StoredVolume volume) {
   Document document;
-  document.volume = std::make_shared<const Volume>(std::move(volume));
-  document.histogram = make_histogram(*document.volume);
+  document.volume = std::make_shared<const ViewedVolume>(std::move(volume));
+  document.histogram = make_histogram(document.volume->stored());
   return document;
 }
 
@@ -42,22 +42,22 @@ LightFile bake_draft(const Volume& volume, const Scene& scene, const Stages& sta
 PointLight trace_surface(const Document& document, const Scene& scene, std::span<const Vec3f> positions,
                          const Stages& stages, const Run& run) {
   TraceSettings settings;
-  if (!document.light) return light_points(*document.volume, scene, positions, settings, {}, stages, run);
+  if (!document.light) return light_points(document.volume->floats(), scene, positions, settings, {}, stages, run);
   const std::optional<Scene> lights_own = light_scene(*document.light);
   if (!lights_own) throw InvalidInput("the light does not tell its whole scene: exact light would differ from it");
   settings.bounces = light_bounces(*document.light);
-  const LightReader reader(*document.volume, document.light->grid, TexelStorage::kDense, run);
-  return light_points(*document.volume, *lights_own, positions, settings, {}, stages, run, reader);
+  const LightReader reader(document.volume->floats(), document.light->grid, TexelStorage::kDense, run);
+  return light_points(document.volume->floats(), *lights_own, positions, settings, {}, stages, run, reader);
 }
 
 void export_surface(const Document& document, const Stages& stages, const BackendChoice& extractor,
                     const ExtractSettings& settings, const Run& run, const std::string& path) {
   const IsoMesh mesh =
-      stages.extractors.create(extractor.name, extractor.settings)->extract(*document.volume, settings, run);
+      stages.extractors.create(extractor.name, extractor.settings)->extract(document.volume->stored(), settings, run);
   std::vector<Rgb8> colours;
   if (document.light) {
     const Vec3f albedo = albedo_of(document, settings.isovalue);
-    const LightReader reader(*document.volume, document.light->grid, TexelStorage::kDense, run);
+    const LightReader reader(document.volume->floats(), document.light->grid, TexelStorage::kDense, run);
     const IndexToWorld& frame = document.volume->lattice().frame;
     colours.reserve(mesh.n_vertices());
     for (const auto v : mesh.vertices()) {

@@ -2,7 +2,6 @@
 
 #include <isolux/bake/bake.h>
 #include <isolux/bake/light_points.h>
-#include <isolux/core/volume.h>
 #include <isolux/volume_io/light_file.h>
 
 #include <memory>
@@ -10,18 +9,19 @@
 #include <span>
 
 #include "model/histogram.h"
+#include "model/viewed_volume.h"
 
 namespace isolux::viewer {
 
 /// What is looked at: a volume and, once there is one, its light.
 struct Document {
-  std::shared_ptr<const Volume> volume;  ///< shared with the threads that work on it
+  std::shared_ptr<const ViewedVolume> volume;  ///< shared with the threads that work on it
   Histogram histogram;
   std::shared_ptr<const LightFile> light;  ///< none at first; shared likewise
 };
 
 /// \pre require_usable(volume)
-[[nodiscard]] Document make_document(Volume volume);
+[[nodiscard]] Document make_document(StoredVolume volume);
 
 /// The albedo that the light's scene gives this isovalue; 0.8 without a light.
 [[nodiscard]] Vec3f albedo_of(const Document& document, float isovalue);

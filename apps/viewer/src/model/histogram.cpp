@@ -1,19 +1,24 @@
 #include "model/histogram.h"
 
 #include <algorithm>
+#include <variant>
 
 namespace isolux::viewer {
 
-Histogram make_histogram(const Volume& volume) {
+Histogram make_histogram(const VolumeView& volume) {
   Histogram result;
   result.range = value_range(volume);
   const double low = result.range.low;
   const double width = double(result.range.high) - low;
   const double steps_a_unit = width > 0.0 ? Histogram::kSteps / width : 0.0;
-  for (const float v : volume.values.values()) {
-    const int step = std::min(int((double(v) - low) * steps_a_unit), Histogram::kSteps - 1);
-    ++result.counts[std::size_t(step)];
-  }
+  std::visit(
+      [&](const auto& values) {
+        for (const auto v : values) {
+          const int step = std::min(int((double(v) - low) * steps_a_unit), Histogram::kSteps - 1);
+          ++result.counts[std::size_t(step)];
+        }
+      },
+      volume.voxels());
   return result;
 }
 

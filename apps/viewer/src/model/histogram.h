@@ -15,7 +15,7 @@ struct Histogram {
 };
 
 /// \pre require_usable(volume). Cost: two passes.
-[[nodiscard]] Histogram make_histogram(const Volume& volume);
+[[nodiscard]] Histogram make_histogram(const VolumeView& volume);
 
 /// The isovalue that parts the values best into two classes (Otsu, "A threshold selection method from gray-level
 /// histograms", 1979); for a constant volume its value.

@@ -7,7 +7,7 @@
 #include <utility>
 
 namespace isolux::viewer {
-SurfaceMaker::SurfaceMaker(std::shared_ptr<const Volume> volume, const Registry<Extractor>& extractors,
+SurfaceMaker::SurfaceMaker(std::shared_ptr<const ViewedVolume> volume, const Registry<Extractor>& extractors,
                            const BackendChoice& choice)
     : volume_(std::move(volume)), extractor_(extractors.create(choice.name, choice.settings)) {
   if (extractors.info(choice.name).name == "marching_cubes") extractor_.reset();
@@ -35,10 +35,10 @@ Surface SurfaceMaker::make(const ExtractSettings& settings, IndexedMesh memory, 
 
 void SurfaceMaker::extract(const ExtractSettings& settings, const Run& run, IndexedMesh& mesh) {
   if (extractor_) {
-    mesh = indexed_mesh(extractor_->extract(*volume_, settings, run));
+    mesh = indexed_mesh(extractor_->extract(volume_->stored(), settings, run));
     return;
   }
-  if (!fast_) fast_.emplace(*volume_, run, IsoExtractor::Index::kBricksAndShorts);
+  if (!fast_) fast_.emplace(volume_->stored(), run);
   fast_->extract(settings, run, mesh);
 }
 

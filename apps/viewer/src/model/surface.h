@@ -1,7 +1,6 @@
 #pragma once
 
 #include <isolux/bake/bake.h>
-#include <isolux/core/volume.h>
 #include <isolux/mc_extract/extractor.h>
 #include <isolux/mc_extract/indexed_mesh.h>
 #include <isolux/mc_extract/iso_extractor.h>
@@ -9,6 +8,8 @@
 #include <memory>
 #include <optional>
 #include <string>
+
+#include "model/viewed_volume.h"
 
 namespace isolux::viewer {
 
@@ -23,9 +24,9 @@ struct Surface {
 /// Makes one surface of a volume after the other. For one thread at a time.
 class SurfaceMaker {
  public:
-  /// With marching cubes ("" or "marching_cubes") through IsoExtractor, whose index and narrow copy are made with the
-  /// first surface; with other backends through the registry. \throw InvalidInput as Registry::create
-  SurfaceMaker(std::shared_ptr<const Volume> volume, const Registry<Extractor>& extractors,
+  /// With marching cubes ("" or "marching_cubes") through IsoExtractor, whose index is made with the first surface;
+  /// with other backends through the registry. \throw InvalidInput as Registry::create
+  SurfaceMaker(std::shared_ptr<const ViewedVolume> volume, const Registry<Extractor>& extractors,
                const BackendChoice& choice);
 
   /// What goes wrong is in Surface::error. The mesh's memory is that of `memory` where it is large enough.
@@ -35,7 +36,7 @@ class SurfaceMaker {
  private:
   void extract(const ExtractSettings& settings, const Run& run, IndexedMesh& mesh);
 
-  std::shared_ptr<const Volume> volume_;
+  std::shared_ptr<const ViewedVolume> volume_;
   std::unique_ptr<Extractor> extractor_;  ///< none: the fast one
   std::optional<IsoExtractor> fast_;
 };

@@ -11,7 +11,8 @@ class MarchingCubes final : public Extractor {
   using Options = NoOptions;
   explicit MarchingCubes(const Options& /*options*/) {}
 
-  [[nodiscard]] IsoMesh extract(const Volume& volume, const ExtractSettings& settings, const Run& run) const override {
+  [[nodiscard]] IsoMesh extract(const VolumeView& volume, const ExtractSettings& settings,
+                                const Run& run) const override {
     IsoMesh mesh;
     IsoExtractor(volume, run, IsoExtractor::Index::kNone).extract(settings, run, mesh);
     return mesh;

@@ -251,7 +251,8 @@ class MarchingCubesTopological final : public Extractor {
   using Options = NoOptions;
   explicit MarchingCubesTopological(const Options& /*options*/) {}
 
-  [[nodiscard]] IsoMesh extract(const Volume& volume, const ExtractSettings& settings, const Run& run) const override {
+  [[nodiscard]] IsoMesh extract(const VolumeView& volume, const ExtractSettings& settings,
+                                const Run& run) const override {
     return mc::build_mesh(
         mc::build_surface(volume, settings, run, [this](mc::SurfaceBuilder& surface, const Index3& cell, int inside) {
           CellSurface(surface, cell, inside, patches_).add();

@@ -23,7 +23,8 @@ class MarchingTetrahedra final : public Extractor {
   using Options = NoOptions;
   explicit MarchingTetrahedra(const Options& /*options*/) {}
 
-  [[nodiscard]] IsoMesh extract(const Volume& volume, const ExtractSettings& settings, const Run& run) const override {
+  [[nodiscard]] IsoMesh extract(const VolumeView& volume, const ExtractSettings& settings,
+                                const Run& run) const override {
     return mc::build_mesh(
         mc::build_surface(volume, settings, run, [](mc::SurfaceBuilder& surface, const Index3& cell, int inside) {
           for (const auto& tetrahedron : kTetrahedra) add_tetrahedron(surface, cell, tetrahedron, inside);

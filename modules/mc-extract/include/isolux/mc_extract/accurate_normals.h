@@ -19,7 +19,7 @@ namespace isolux {
 ///
 /// `outer`: as the mesh was extracted. About .3 us a vertex and thread; the same bits for any number of threads.
 /// \pre the mesh lies in the volume's box, world space. \throw Cancelled
-void set_accurate_normals(const Volume& volume, OuterSide outer, const Run& run, IndexedMesh& mesh);
-void set_accurate_normals(const Volume& volume, OuterSide outer, const Run& run, IsoMesh& mesh);
+void set_accurate_normals(const VolumeView& volume, OuterSide outer, const Run& run, IndexedMesh& mesh);
+void set_accurate_normals(const VolumeView& volume, OuterSide outer, const Run& run, IsoMesh& mesh);
 
 }  // namespace isolux

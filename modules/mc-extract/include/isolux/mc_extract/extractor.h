@@ -46,7 +46,7 @@ class Extractor {
   /// an oriented 2-manifold: an edge inside the box has two faces, a vertex one fan. No triangle has zero area, as far
   /// as float coordinates can tell: a vertex that would lie on a grid point is kept 2^-10 of an edge away from it. \pre
   /// require_usable(volume). \throw Cancelled; InvalidInput if the mesh would not fit 2^31 half-edges.
-  [[nodiscard]] virtual IsoMesh extract(const Volume& volume, const ExtractSettings& settings,
+  [[nodiscard]] virtual IsoMesh extract(const VolumeView& volume, const ExtractSettings& settings,
                                         const Run& run) const = 0;
 };
 
