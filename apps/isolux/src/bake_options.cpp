@@ -44,11 +44,11 @@ void add_isovalue(CLI::App& command, float& isovalue) {
   command.add_option("--iso", isovalue, "isovalue")->required()->type_name("H")->check(finite_number());
 }
 
-void warn_outside_range(const Volume& volume, float isovalue, const Session& session) {
+void warn_outside_range(const VolumeView& volume, float isovalue, const Session& session) {
   const ValueRange range = value_range(volume);
   if (isovalue >= range.low && isovalue <= range.high) return;
   session.warn(fmt::format("isovalue {} lies outside the values of {} ({} to {}): there is no surface", isovalue,
-                           volume.name, range.low, range.high));
+                           volume.name(), range.low, range.high));
 }
 
 }  // namespace isolux

@@ -37,7 +37,7 @@ class TraceOptions {
 void add_isovalue(CLI::App& command, float& isovalue);
 
 /// Says so if no voxel is on one side of the isovalue: the surface is empty.
-void warn_outside_range(const Volume& volume, float isovalue, const Session& session);
+void warn_outside_range(const VolumeView& volume, float isovalue, const Session& session);
 
 /// \throw UsageError if the registry does not know the backend or its settings.
 template <class Stage>

@@ -22,7 +22,7 @@ void add_convert_command(CLI::App& program, Session& session) {
   command.callback([options, &session] {
     session.on_run([options, &session] {
       session.require_outputs({{"OUT", options->output}});
-      const Volume volume = options->volume.read_as_is(session);
+      const StoredVolume volume = options->volume.read_as_is(session);
       session.timed("write", [&] { write_volume(volume, options->output, options->write); });
     });
   });

@@ -111,18 +111,30 @@ void require_output(const std::string& path) {
   }
 }
 
-void run_extract(const Options& options, Session& session) {
-  require_output(options.output);
-  BackendChoice choice{options.backend, {}};
-  apply_settings(options.set, {{"extractor", &choice.settings}});
-  require_choice(session.stages.extractors, choice);
-  require_choice(session.stages.tracers, {options.trace.tracer(), {}});
-  if (options.side.given() && !options.light.given() && !options.exact_light)
-    throw UsageError("--side: it chooses whose light; give --light LIGHT.nrrd or --exact-light");
-  session.require_outputs({{"--output", options.output}});
-  const Volume volume = options.volume.read(session);
+/// What a surface is taken from: floats are for its light alone.
+struct Subject {
+  VolumeView volume;
+  const Volume* floats;  ///< null without light
+};
+
+void report_mesh(const IsoMesh& mesh, const Options& options, const std::string& backend, Session& session) {
+  const MeshMeasures measures = session.timed("measure", [&] { return measure_mesh(mesh); });
+  session.report["area"] = measures.area;
+  session.report["volume"] = measures.volume;
+  session.report["euler_number"] = measures.euler_number;
+  session.report["components"] = measures.components;
+  session.report["boundary_edges"] = measures.boundary_edges;
+  session.report["zero_area_triangles"] = measures.zero_area_triangles;
+  session.report["triangles"] = mesh.n_faces();
+  session.report["vertices"] = mesh.n_vertices();
+  session.report["settings"] = {{"isovalue", options.isovalue}, {"backend", backend}, {"normals", options.normals}};
+  session.say(fmt::format("{} triangles, {} vertices", mesh.n_faces(), mesh.n_vertices()));
+}
+
+void extract(const Subject& subject, const BackendChoice& choice, const Options& options, Session& session) {
+  const VolumeView& volume = subject.volume;
   std::optional<LightFile> light;
-  if (options.light.given()) light = options.light.read(volume, session);
+  if (options.light.given()) light = options.light.read(*subject.floats, session);
   const Scene scene = scene_for(options, light);
   if (!options.exact_light && options.trace.says_how_to_trace())
     session.warn("--bounces, --rays and --tracer have no effect without --exact-light");
@@ -142,26 +154,35 @@ void run_extract(const Options& options, Session& session) {
   if (!options.cap || mesh.n_faces() == 0) warn_outside_range(volume, options.isovalue, session);
   std::vector<Rgb8> colours;
   if (options.exact_light) {
-    colours = exact_colours(mesh, volume, scene_of_side(scene, options.side.or_outer()), light, options, session);
+    colours =
+        exact_colours(mesh, *subject.floats, scene_of_side(scene, options.side.or_outer()), light, options, session);
   } else if (light) {
-    colours = session.timed("light", [&] { return baked_colours(mesh, volume, *light, options, session.run); });
+    colours =
+        session.timed("light", [&] { return baked_colours(mesh, *subject.floats, *light, options, session.run); });
   }
   session.timed("write", [&] {
     write_atomically_by_name(options.output, [&](const std::string& path) { write_mesh(mesh, colours, path); });
   });
-  const MeshMeasures measures = session.timed("measure", [&] { return measure_mesh(mesh); });
-  session.report["area"] = measures.area;
-  session.report["volume"] = measures.volume;
-  session.report["euler_number"] = measures.euler_number;
-  session.report["components"] = measures.components;
-  session.report["boundary_edges"] = measures.boundary_edges;
-  session.report["zero_area_triangles"] = measures.zero_area_triangles;
-  session.report["triangles"] = mesh.n_faces();
-  session.report["vertices"] = mesh.n_vertices();
-  session.report["settings"] = {{"isovalue", options.isovalue},
-                                {"backend", session.stages.extractors.info(choice.name).name},
-                                {"normals", options.normals}};
-  session.say(fmt::format("{} triangles, {} vertices", mesh.n_faces(), mesh.n_vertices()));
+  report_mesh(mesh, options, session.stages.extractors.info(choice.name).name, session);
+}
+
+void run_extract(const Options& options, Session& session) {
+  require_output(options.output);
+  BackendChoice choice{options.backend, {}};
+  apply_settings(options.set, {{"extractor", &choice.settings}});
+  require_choice(session.stages.extractors, choice);
+  require_choice(session.stages.tracers, {options.trace.tracer(), {}});
+  const bool lit = options.light.given() || options.exact_light;
+  if (options.side.given() && !lit)
+    throw UsageError("--side: it chooses whose light; give --light LIGHT.nrrd or --exact-light");
+  session.require_outputs({{"--output", options.output}});
+  if (lit) {
+    const Volume volume = options.volume.read(session);
+    extract({.volume = volume, .floats = &volume}, choice, options, session);
+  } else {
+    const StoredVolume volume = options.volume.read_stored(session);
+    extract({.volume = volume, .floats = nullptr}, choice, options, session);
+  }
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 #include <cstdio>
 #include <limits>
 #include <memory>
+#include <variant>
 
 #include "commands.h"
 #include "volume_options.h"
@@ -27,10 +28,10 @@ struct Statistics {
   std::array<std::size_t, kBins> histogram{};  ///< of the finite values, equal bins from low to high
 };
 
-Statistics statistics(const Volume& volume) {
+Statistics statistics(const auto& values) {
   Statistics s;
   double sum = 0.0;
-  for (const float v : volume.values.values()) {
+  for (const float v : values) {
     if (!std::isfinite(v)) {
       ++s.not_finite;
       continue;
@@ -43,13 +44,13 @@ Statistics statistics(const Volume& volume) {
   if (s.finite == 0) return s;
   s.mean = sum / double(s.finite);
   const double scale = s.high > s.low ? double(kBins) / (double(s.high) - double(s.low)) : 0.0;
-  for (const float v : volume.values.values()) {
+  for (const float v : values) {
     if (std::isfinite(v)) ++s.histogram[std::min(kBins - 1, std::size_t((double(v) - double(s.low)) * scale))];
   }
   return s;
 }
 
-nlohmann::json to_json(const Volume& volume, const Statistics& s) {
+nlohmann::json to_json(const StoredVolume& volume, const Statistics& s) {
   const Lattice& lattice = volume.lattice();
   const Vec3 spacing = lattice.frame.spacing();
   const Vec3& o = lattice.frame.origin;
@@ -63,7 +64,7 @@ nlohmann::json to_json(const Volume& volume, const Statistics& s) {
                       {"origin", {o.x, o.y, o.z}},
                       {"space", volume.space},
                       {"space_directions", axes},
-                      {"voxels", volume.values.values().size()},
+                      {"voxels", lattice.count()},
                       {"not_finite", s.not_finite},
                       {"sha256", volume_sha256(volume)}};
   if (s.finite > 0) {
@@ -74,7 +75,7 @@ nlohmann::json to_json(const Volume& volume, const Statistics& s) {
   return json;
 }
 
-void print(const Volume& volume, const Statistics& s) {
+void print(const StoredVolume& volume, const Statistics& s) {
   const Lattice& lattice = volume.lattice();
   const Vec3 spacing = lattice.frame.spacing();
   const Vec3& o = lattice.frame.origin;
@@ -111,8 +112,8 @@ void add_info_command(CLI::App& program, Session& session) {
   session.add_common_options(command);
   command.callback([options, &session] {
     session.on_run([options, &session] {
-      const Volume volume = options->volume.read_as_is(session);
-      const Statistics s = statistics(volume);
+      const StoredVolume volume = options->volume.read_as_is(session);
+      const Statistics s = std::visit([](const auto& grid) { return statistics(grid.values()); }, volume.values);
       if (options->json) {
         fmt::print("{}\n", to_json(volume, s).dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
       } else {

@@ -6,6 +6,7 @@
 
 #include <cmath>
 #include <optional>
+#include <variant>
 
 #include "parse.h"
 #include "usage.h"
@@ -52,22 +53,33 @@ ReadOptions VolumeOptions::read_options() const {
   return options;
 }
 
-Volume VolumeOptions::read_as_is(Session& session) const {
+StoredVolume VolumeOptions::read_in(VoxelForm form, Session& session) const {
   const ReadOptions options = read_options();
   std::optional<float> replacement;
   if (!replacement_.empty()) replacement = float(parse_numbers("--replace-nonfinite", replacement_, 1)[0]);
-  Volume volume =
-      session.timed("read", [&] { return read_volume(source_, options, session.run, session.stages.readers); });
-  if (replacement) {
-    for (float& voxel : volume.values.values()) {
+  StoredVolume volume = session.timed("read", [&] {
+    if (form == VoxelForm::kStored) return read_stored_volume(source_, options, session.run, session.stages.readers);
+    return keep_floats(read_volume(source_, options, session.run, session.stages.readers));
+  });
+  auto* floats = std::get_if<Grid<float>>(&volume.values);
+  if (replacement && floats != nullptr) {
+    for (float& voxel : floats->values()) {
       if (!std::isfinite(voxel)) voxel = *replacement;
     }
   }
   return volume;
 }
 
+StoredVolume VolumeOptions::read_as_is(Session& session) const { return read_in(VoxelForm::kStored, session); }
+
+StoredVolume VolumeOptions::read_stored(Session& session) const {
+  StoredVolume volume = read_as_is(session);
+  require_usable(volume);
+  return volume;
+}
+
 Volume VolumeOptions::read(Session& session) const {
-  Volume volume = read_as_is(session);
+  Volume volume = to_floats(read_in(VoxelForm::kFloats, session));
   require_usable(volume);
   return volume;
 }

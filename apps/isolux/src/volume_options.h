@@ -15,14 +15,17 @@ class VolumeOptions {
  public:
   void add_to(CLI::App& command);
   [[nodiscard]] const std::string& source() const { return source_; }
-  /// As in the file, with --replace-nonfinite applied: else voxels may be infinite or not numbers; axes may be 1 wide.
-  /// \throw UsageError, IoError, InvalidInput
-  [[nodiscard]] Volume read_as_is(Session& session) const;
-  /// The same, fit for every stage (require_usable).
+  /// As in the file and in its type, with --replace-nonfinite applied: else voxels may be infinite or not numbers; axes
+  /// may be 1 wide. \throw UsageError, IoError, InvalidInput
+  [[nodiscard]] StoredVolume read_as_is(Session& session) const;
+  /// The same, fit for surfaces (require_usable).
+  [[nodiscard]] StoredVolume read_stored(Session& session) const;
+  /// In floats, fit for every stage.
   [[nodiscard]] Volume read(Session& session) const;
 
  private:
   [[nodiscard]] ReadOptions read_options() const;
+  [[nodiscard]] StoredVolume read_in(VoxelForm form, Session& session) const;
 
   std::string source_;
   std::string dims_;

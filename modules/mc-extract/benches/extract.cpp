@@ -8,7 +8,10 @@
 #include <cstdlib>
 #include <map>
 #include <memory>
+#include <optional>
+#include <span>
 #include <string>
+#include <variant>
 #include <vector>
 
 #ifdef ISOLUX_BENCH_VTK
@@ -30,6 +33,7 @@ struct Subject {
   const char* name;
   const char* source;  ///< `gen:` text, or a file of ISOLUX_DATA
   float isovalue;
+  [[nodiscard]] bool is_file() const { return !std::string(source).starts_with("gen:"); }
 };
 
 constexpr Subject kSubjects[] = {{"gyroid256", "gen:gyroid:256", 0.1f},
@@ -45,10 +49,10 @@ constexpr Subject kSparseSubjects[] = {{"sphere512", "gen:sphere:512", -0.12f}, 
 enum class Held : std::uint8_t { kAsStored, kInFloats };
 
 struct Voxels {
-  StoredVolume stored;
+  std::optional<StoredVolume> file;
   Volume floats;
-  [[nodiscard]] VolumeView view(Held held) const {
-    return held == Held::kAsStored ? VolumeView(stored) : VolumeView(floats);
+  [[nodiscard]] VolumeView view(Held held = Held::kAsStored) const {
+    return file && held == Held::kAsStored ? VolumeView(*file) : VolumeView(floats);
   }
 };
 
@@ -58,13 +62,12 @@ const Voxels* volume_of(const Subject& subject) {
   std::unique_ptr<Voxels>& volume = volumes[subject.name];
   if (volume != nullptr) return volume.get();
   std::erase_if(volumes, [&](const auto& other) { return other.second != nullptr; });  // one at a time fits
-  std::string source = subject.source;
-  if (!source.starts_with("gen:")) {
-    const char* folder = std::getenv("ISOLUX_DATA");
-    if (folder == nullptr) return nullptr;
-    source = std::string(folder) + "/" + source;
+  if (!subject.is_file()) {
+    volume = std::make_unique<Voxels>(Voxels{.file = {}, .floats = read_volume(subject.source)});
+  } else if (const char* folder = std::getenv("ISOLUX_DATA")) {
+    StoredVolume file = read_stored_volume(std::string(folder) + "/" + subject.source);
+    volume = std::make_unique<Voxels>(Voxels{.file = file, .floats = to_floats(file)});
   }
-  volume = std::make_unique<Voxels>(Voxels{.stored = read_stored_volume(source), .floats = read_volume(source)});
   return volume.get();
 }
 
@@ -84,13 +87,11 @@ std::size_t triangle_count(const Mesh& mesh) {
 }
 
 template <class Mesh>
-void fresh(benchmark::State& state, const Subject& subject, Held held) {
-  const Voxels* volume = volume_of(subject);
-  if (volume == nullptr) return state.SkipWithError("ISOLUX_DATA is not set");
+void fresh(benchmark::State& state, const Voxels& volume, const Subject& subject, Held held) {
   std::size_t triangles = 0;
   for (auto _ : state) {
     Mesh mesh;
-    IsoExtractor(volume->view(held), run_of(state), IsoExtractor::Index::kNone)
+    IsoExtractor(volume.view(held), run_of(state), IsoExtractor::Index::kNone)
         .extract({.isovalue = subject.isovalue}, run_of(state), mesh);
     triangles = triangle_count(mesh);
   }
@@ -98,10 +99,8 @@ void fresh(benchmark::State& state, const Subject& subject, Held held) {
 }
 
 template <class Mesh>
-void kept(benchmark::State& state, const Subject& subject, Held held, IsoExtractor::Index index) {
-  const Voxels* volume = volume_of(subject);
-  if (volume == nullptr) return state.SkipWithError("ISOLUX_DATA is not set");
-  IsoExtractor extractor(volume->view(held), run_of(state), index);
+void kept(benchmark::State& state, const Voxels& volume, const Subject& subject, Held held, IsoExtractor::Index index) {
+  IsoExtractor extractor(volume.view(held), run_of(state), index);
   Mesh mesh;
   extractor.extract({.isovalue = subject.isovalue}, run_of(state), mesh);
   for (auto _ : state) extractor.extract({.isovalue = subject.isovalue}, run_of(state), mesh);
@@ -125,11 +124,10 @@ void report_sweep(benchmark::State& state, std::size_t triangles) {
       double(kSweep) * 1e-3, benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
 }
 
-void sweep(benchmark::State& state, const Subject& subject, Held held, IsoExtractor::Index index) {
-  const Voxels* volume = volume_of(subject);
-  if (volume == nullptr) return state.SkipWithError("ISOLUX_DATA is not set");
-  const std::vector<float> isovalues = sweep_isovalues(volume->floats);
-  IsoExtractor extractor(volume->view(held), run_of(state), index);
+void sweep(benchmark::State& state, const Voxels& volume, const Subject& /*subject*/, Held held,
+           IsoExtractor::Index index) {
+  const std::vector<float> isovalues = sweep_isovalues(volume.floats);
+  IsoExtractor extractor(volume.view(held), run_of(state), index);
   IndexedMesh mesh;
   std::size_t triangles = 0;
   for (auto _ : state) {
@@ -142,37 +140,29 @@ void sweep(benchmark::State& state, const Subject& subject, Held held, IsoExtrac
   report_sweep(state, triangles);
 }
 
-void index_build(benchmark::State& state, const Subject& subject, Held held) {
-  const Voxels* volume = volume_of(subject);
-  if (volume == nullptr) return state.SkipWithError("ISOLUX_DATA is not set");
-  for (auto _ : state) IsoExtractor(volume->view(held), run_of(state));
+void index_build(benchmark::State& state, const Voxels& volume, const Subject& /*subject*/, Held held) {
+  for (auto _ : state) IsoExtractor(volume.view(held), run_of(state));
 }
 
-void accurate_normals(benchmark::State& state, const Subject& subject) {
-  const Voxels* volume = volume_of(subject);
-  if (volume == nullptr) return state.SkipWithError("ISOLUX_DATA is not set");
+void accurate_normals(benchmark::State& state, const Voxels& volume, const Subject& subject) {
   IndexedMesh mesh;
-  IsoExtractor(volume->stored).extract({.isovalue = subject.isovalue}, run_of(state), mesh);
-  for (auto _ : state) set_accurate_normals(volume->stored, OuterSide::kLower, run_of(state), mesh);
+  IsoExtractor(volume.view()).extract({.isovalue = subject.isovalue}, run_of(state), mesh);
+  for (auto _ : state) set_accurate_normals(volume.view(), OuterSide::kLower, run_of(state), mesh);
   report(state, mesh.triangles.size());
 }
 
-void backend(benchmark::State& state, const Subject& subject, const std::string& name) {
-  const Voxels* volume = volume_of(subject);
-  if (volume == nullptr) return state.SkipWithError("ISOLUX_DATA is not set");
+void backend(benchmark::State& state, const Voxels& volume, const Subject& subject, const std::string& name) {
   const auto extractor = extractors().create(name);
   std::size_t triangles = 0;
   for (auto _ : state)
-    triangles = extractor->extract(volume->stored, {.isovalue = subject.isovalue}, run_of(state)).n_faces();
+    triangles = extractor->extract(volume.view(), {.isovalue = subject.isovalue}, run_of(state)).n_faces();
   report(state, triangles);
 }
 
 /// OpenMesh's own way, beside an indexed mesh.
-void openmesh_add_face(benchmark::State& state, const Subject& subject) {
-  const Voxels* volume = volume_of(subject);
-  if (volume == nullptr) return state.SkipWithError("ISOLUX_DATA is not set");
+void openmesh_add_face(benchmark::State& state, const Voxels& volume, const Subject& subject) {
   IndexedMesh indexed;
-  IsoExtractor(volume->stored).extract({.isovalue = subject.isovalue}, run_of(state), indexed);
+  IsoExtractor(volume.view()).extract({.isovalue = subject.isovalue}, run_of(state), indexed);
   for (auto _ : state) {
     IsoMesh mesh;
     mesh.reserve(indexed.positions.size(), 3 * indexed.triangles.size() / 2, indexed.triangles.size());
@@ -187,24 +177,18 @@ void openmesh_add_face(benchmark::State& state, const Subject& subject) {
 }
 
 #ifdef ISOLUX_BENCH_VTK
+/// Of floats or bytes, which it reads in place.
 class FlyingEdges {
  public:
-  enum class Values : std::uint8_t { kFloat, kByte };
-  FlyingEdges(const Volume& volume, int threads, Values type = Values::kFloat) {
+  FlyingEdges(const VolumeView& volume, int threads) {
     vtk::detail::smp::vtkSMPToolsAPI::GetInstance().Initialize(threads);
     const Index3 size = volume.lattice().size;
     image_->SetDimensions(size.x, size.y, size.z);
-    const auto values = volume.values.values();
-    if (type == Values::kFloat) {
-      const auto floats = vtkSmartPointer<vtkFloatArray>::New();
-      floats->SetArray(const_cast<float*>(values.data()), vtkIdType(values.size()), 1);
-      image_->GetPointData()->SetScalars(floats);
-    } else {
-      const auto bytes = vtkSmartPointer<vtkUnsignedCharArray>::New();
-      bytes->SetNumberOfValues(vtkIdType(values.size()));
-      std::transform(values.begin(), values.end(), bytes->GetPointer(0), [](float v) { return std::uint8_t(v); });
-      image_->GetPointData()->SetScalars(bytes);
-    }
+    if (const auto* floats = std::get_if<std::span<const float>>(&volume.voxels()))
+      set_values(vtkSmartPointer<vtkFloatArray>::New(), *floats);
+    else
+      set_values(vtkSmartPointer<vtkUnsignedCharArray>::New(),
+                 std::get<std::span<const std::uint8_t>>(volume.voxels()));
   }
   /// Triangles of the level set, extracted with normals.
   [[nodiscard]] std::size_t extract(float isovalue) const {
@@ -219,34 +203,24 @@ class FlyingEdges {
   }
 
  private:
+  template <class Value>
+  void set_values(const auto& array, std::span<const Value> values) {
+    array->SetArray(const_cast<Value*>(values.data()), vtkIdType(values.size()), 1);
+    image_->GetPointData()->SetScalars(array);
+  }
   vtkSmartPointer<vtkImageData> image_ = vtkSmartPointer<vtkImageData>::New();
 };
 
-void vtk_flying_edges(benchmark::State& state, const Subject& subject) {
-  const Voxels* volume = volume_of(subject);
-  if (volume == nullptr) return state.SkipWithError("ISOLUX_DATA is not set");
-  const FlyingEdges flying_edges(volume->floats, int(state.range(0)));
+void vtk_flying_edges(benchmark::State& state, const Voxels& volume, const Subject& subject, Held held) {
+  const FlyingEdges flying_edges(volume.view(held), int(state.range(0)));
   std::size_t triangles = 0;
   for (auto _ : state) triangles = flying_edges.extract(subject.isovalue);
   report(state, triangles);
 }
 
-/// On bytes, as the file has them: a quarter of the memory.
-void vtk_flying_edges_u8(benchmark::State& state, const Subject& subject) {
-  const Voxels* volume = volume_of(subject);
-  if (volume == nullptr) return state.SkipWithError("ISOLUX_DATA is not set");
-  if (volume->stored.stored_type != ScalarType::kUint8) return state.SkipWithError("not a volume of bytes");
-  const FlyingEdges flying_edges(volume->floats, int(state.range(0)), FlyingEdges::Values::kByte);
-  std::size_t triangles = 0;
-  for (auto _ : state) triangles = flying_edges.extract(subject.isovalue);
-  report(state, triangles);
-}
-
-void vtk_sweep(benchmark::State& state, const Subject& subject) {
-  const Voxels* volume = volume_of(subject);
-  if (volume == nullptr) return state.SkipWithError("ISOLUX_DATA is not set");
-  const FlyingEdges flying_edges(volume->floats, int(state.range(0)));
-  const std::vector<float> isovalues = sweep_isovalues(volume->floats);
+void vtk_sweep(benchmark::State& state, const Voxels& volume, const Subject& /*subject*/) {
+  const FlyingEdges flying_edges(volume.floats, int(state.range(0)));
+  const std::vector<float> isovalues = sweep_isovalues(volume.floats);
   std::size_t triangles = 0;
   for (auto _ : state) {
     triangles = 0;
@@ -259,7 +233,11 @@ void vtk_sweep(benchmark::State& state, const Subject& subject) {
 void add(const Subject& subject, const std::string& what, auto function) {
   for (const int threads : {1, 2})
     benchmark::RegisterBenchmark((std::string(subject.name) + "/" + what).c_str(),
-                                 [function, &subject](benchmark::State& state) { function(state, subject); })
+                                 [function, &subject](benchmark::State& state) {
+                                   const Voxels* volume = volume_of(subject);
+                                   if (volume == nullptr) return state.SkipWithError("ISOLUX_DATA is not set");
+                                   function(state, *volume, subject);
+                                 })
         ->Arg(threads)
         ->ArgName("threads")
         ->UseRealTime()
@@ -269,37 +247,44 @@ void add(const Subject& subject, const std::string& what, auto function) {
 using Index = IsoExtractor::Index;
 
 void add_rows(const Subject& subject, Held held, const std::string& as) {
-  add(subject, "indexed_fresh" + as, [held](auto& state, auto& s) { fresh<IndexedMesh>(state, s, held); });
-  add(subject, "half_edges_fresh" + as, [held](auto& state, auto& s) { fresh<IsoMesh>(state, s, held); });
-  add(subject, "index_build" + as, [held](auto& state, auto& s) { index_build(state, s, held); });
+  add(subject, "indexed_fresh" + as, [held](auto& state, auto& v, auto& s) { fresh<IndexedMesh>(state, v, s, held); });
+  add(subject, "half_edges_fresh" + as, [held](auto& state, auto& v, auto& s) { fresh<IsoMesh>(state, v, s, held); });
+  add(subject, "index_build" + as, [held](auto& state, auto& v, auto& s) { index_build(state, v, s, held); });
   for (const Index index : {Index::kNone, Index::kBricks}) {
     const std::string row = (index == Index::kBricks ? "_index" : "") + as;
-    add(subject, "indexed_kept" + row, [=](auto& state, auto& s) { kept<IndexedMesh>(state, s, held, index); });
-    add(subject, "half_edges_kept" + row, [=](auto& state, auto& s) { kept<IsoMesh>(state, s, held, index); });
-    add(subject, "sweep" + row, [=](auto& state, auto& s) { sweep(state, s, held, index); });
+    add(subject, "indexed_kept" + row,
+        [=](auto& state, auto& v, auto& s) { kept<IndexedMesh>(state, v, s, held, index); });
+    add(subject, "half_edges_kept" + row,
+        [=](auto& state, auto& v, auto& s) { kept<IsoMesh>(state, v, s, held, index); });
+    add(subject, "sweep" + row, [=](auto& state, auto& v, auto& s) { sweep(state, v, s, held, index); });
   }
 }
 
+#ifdef ISOLUX_BENCH_VTK
+void add_flying_edges(const Subject& subject, Held held, const std::string& as) {
+  add(subject, "vtk_flying_edges" + as, [held](auto& state, auto& v, auto& s) { vtk_flying_edges(state, v, s, held); });
+}
+#endif
+
 void register_dense(const Subject& subject) {
 #ifdef ISOLUX_BENCH_VTK
-  add(subject, "vtk_flying_edges", vtk_flying_edges);
-  if (!std::string(subject.source).starts_with("gen:")) add(subject, "vtk_flying_edges_u8", vtk_flying_edges_u8);
+  add_flying_edges(subject, Held::kInFloats, "");
+  if (subject.is_file()) add_flying_edges(subject, Held::kAsStored, "_u8");
   add(subject, "vtk_sweep", vtk_sweep);
 #endif
-  for (const Held held : {Held::kAsStored, Held::kInFloats}) {
-    if (held == Held::kInFloats && std::string(subject.source).starts_with("gen:")) continue;
-    add_rows(subject, held, held == Held::kInFloats ? "_floats" : "");
-  }
+  add_rows(subject, Held::kAsStored, "");
+  if (subject.is_file()) add_rows(subject, Held::kInFloats, "_floats");
   add(subject, "accurate_normals", accurate_normals);
   add(subject, "openmesh_add_face", openmesh_add_face);
   const Registry<Extractor> registry = extractors();
   for (const BackendInfo& info : registry.backends())
-    add(subject, "backend_" + info.name, [name = info.name](auto& state, auto& s) { backend(state, s, name); });
+    add(subject, "backend_" + info.name,
+        [name = info.name](auto& state, auto& v, auto& s) { backend(state, v, s, name); });
 }
 
 void register_sparse(const Subject& subject) {
 #ifdef ISOLUX_BENCH_VTK
-  add(subject, "vtk_flying_edges", vtk_flying_edges);
+  add_flying_edges(subject, Held::kInFloats, "");
 #endif
   add_rows(subject, Held::kAsStored, "");
 }
