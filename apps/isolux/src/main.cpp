@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "commands.h"
+#include "memory.h"
 #include "session.h"
 #include "signals.h"
 #include "terminal.h"
@@ -45,6 +46,7 @@ const CLI::App& chosen(const CLI::App& program) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  isolux::return_large_arrays();
   isolux::open_standard_streams();
   const isolux::SignalWatcher signals;
   std::string what = "command line";

@@ -19,7 +19,7 @@
 namespace isolux {
 namespace {
 
-/// Few, as each takes passes over the volume; so many that a part's sites take less than a float a texel of them all.
+/// Few, as each takes passes over the volume; so many that a part's sites take less than a byte a texel of them all.
 constexpr std::size_t kMostParts = 32;
 constexpr std::size_t kTexelsAPart = std::size_t(1) << 19;
 
@@ -53,8 +53,8 @@ class PartBaker {
     result_.least_rays = result_.most_rays = std::uint32_t(settings_.trace.rays);
     result_.rmse_estimate = error_.root();
     const Stopwatch watch;
-    if (settings_.wants_error_grid) result_.error = fill_unlit(std::move(errors_), run_);
-    finish_light(volume_, last_, std::move(light_), *resampler_, settings_, run_, result_);
+    if (settings_.wants_error_grid) result_.error = fill_unlit(told_by_bytes(std::move(errors_)), run_);
+    finish_light(volume_, last_, told_by_bytes(std::move(light_)), *resampler_, settings_, run_, result_);
     result_.seconds["resample"] += watch.seconds();
     return std::move(result_);
   }
@@ -82,14 +82,15 @@ class PartBaker {
   void keep_light() {
     const Stopwatch watch;
     error_.add(last_.variance);
-    if (light_.lit.empty()) light_ = unlit_grid(texels_, last_.channels);
+    if (light_.values.empty()) light_ = unlit_grid(texels_, last_.channels);
     resampler_->add_part(volume_, last_, light_, run_);
     if (settings_.wants_error_grid) {
-      if (errors_.lit.empty()) errors_ = unlit_grid(texels_, 1);
+      if (errors_.values.empty()) errors_ = unlit_grid(texels_, 1);
       SampleSet errors = standard_errors(std::move(last_));
       resampler_->add_part(volume_, errors, errors_, run_);
       last_ = std::move(errors);
     }
+    keep_first(kSamplesShown, last_);
     result_.seconds["resample"] += watch.seconds();
   }
 
@@ -102,9 +103,9 @@ class PartBaker {
   std::unique_ptr<const FlatTracer> tracer_;
   std::unique_ptr<const Resampler> resampler_;
   BakeResult result_;
-  ResampledGrid light_;
-  ResampledGrid errors_;
-  SampleSet last_;  ///< the samples of the last part
+  IlluminationGrid light_;
+  IlluminationGrid errors_;
+  SampleSet last_;  ///< samples of the last part
   MeanVariance error_;
 };
 

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 #include <isolux/core/error.h>
+#include <isolux/core/release.h>
 #include <isolux/core/stopwatch.h>
 #include <isolux/resample/fill_unlit.h>
 
@@ -47,11 +48,28 @@ int kept_rays_a_site(const BakeSettings& settings, std::size_t sites, int rays) 
 
 SampleSet standard_errors(SampleSet samples) {
   samples.channels = 1;
-  samples.lamps = samples.lamps_variance = {};  // parts of the light, not of its error
+  release(samples.lamps);  // parts of the light, not of its error
+  release(samples.lamps_variance);
   samples.radiance.resize(samples.size());
   std::transform(samples.variance.begin(), samples.variance.end(), samples.radiance.begin(),
                  [](float variance) { return std::sqrt(variance); });
   return samples;
+}
+
+void keep_first(std::size_t count, SampleSet& samples) {
+  const auto keep = [&](auto& array, std::size_t values) {
+    if (array.size() <= values) return;
+    array.resize(values);
+    array.shrink_to_fit();
+  };
+  const std::size_t values = count * std::size_t(samples.channels);
+  keep(samples.sites.positions, count);
+  keep(samples.sites.isovalues, count);
+  keep(samples.sites.normals, count);
+  keep(samples.radiance, values);
+  keep(samples.variance, count);
+  keep(samples.lamps, values);
+  keep(samples.lamps_variance, count);
 }
 
 void finish_light(const Volume& volume, const SampleSet& samples, ResampledGrid partial, const Resampler& resampler,

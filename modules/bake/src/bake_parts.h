@@ -2,6 +2,7 @@
 
 #include <isolux/bake/bake.h>
 
+#include <cstddef>
 #include <cstdint>
 
 namespace isolux {
@@ -31,6 +32,12 @@ void require_lightable(const Volume& volume, const BakeSettings& settings);
 
 /// What a sampler is asked for, but for the number of sites a texel.
 [[nodiscard]] SiteRequest site_request(const BakeSettings& settings, const Lattice& texels, OuterSide outer);
+
+/// Of samples of all texels, what a resampler is shown where they are put into the grid part by part: all would take
+/// more than was saved.
+inline constexpr std::size_t kSamplesShown = 16384;
+/// Leaves the first `count` samples.
+void keep_first(std::size_t count, SampleSet& samples);
 
 /// Samples of their standard error instead of light.
 [[nodiscard]] SampleSet standard_errors(SampleSet samples);

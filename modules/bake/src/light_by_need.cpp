@@ -4,6 +4,7 @@
 #include <isolux/core/error.h>
 #include <isolux/core/parallel.h>
 #include <isolux/core/random.h>
+#include <isolux/core/release.h>
 #include <isolux/core/spread_labels.h>
 #include <isolux/core/stopwatch.h>
 #include <isolux/raytrace_flat/light_links.h>
@@ -137,7 +138,7 @@ class ByNeed {
     traced_light_ = std::move(samples.radiance);
     variance_ = std::move(samples.variance);
     pyramid_.update({.light = traced_light_, .variance = variance_, .rays = links_->rays()}, run_);
-    light_ = {};
+    release(light_);
     light_ = pyramid_.light(run_);
   }
 

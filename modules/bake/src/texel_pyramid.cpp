@@ -1,5 +1,7 @@
 #include "texel_pyramid.h"
 
+#include <isolux/core/release.h>
+
 #include <algorithm>
 #include <array>
 #include <glm/common.hpp>
@@ -134,8 +136,8 @@ void TexelPyramid::refine(std::span<const Cell> cells) {
 void TexelPyramid::refine_all() {
   is_all_traced_ = true;
   levels_ = {};
-  difference_ = {};
-  noise_ = {};
+  release(difference_);
+  release(noise_);
   constexpr std::size_t kTexelsAtOnce = 64 * kBlock;
   for (std::size_t begin = 0; begin < numbers_.size(); begin += kTexelsAtOnce) {
     const std::size_t end = std::min(numbers_.size(), begin + kTexelsAtOnce);

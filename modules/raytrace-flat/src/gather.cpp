@@ -30,8 +30,10 @@ TraceCounters gather(const Volume& volume, const Sites& sites, const GatherSetti
                              .count = std::size_t(settings.rays),
                              .all = std::size_t(std::max(settings.all_rays, 0))};
   const wide::Aimer aimer(volume.lattice().frame, run.seed, range, settings.nets, sites);
-  const wide::BlockRequest request{
-      .outer = settings.outer, .rays_per_site = aimer.rays(), .sites_per_block = wide::sites_per_batch(aimer.rays())};
+  const wide::BlockRequest request{.outer = settings.outer,
+                                   .rays_per_site = aimer.rays(),
+                                   .sites_per_block = wide::sites_per_batch(aimer.rays()),
+                                   .proofs = settings.question == RayQuestion::kAnyHit};
   const auto question = settings.question == RayQuestion::kAnyHit ? wide::Question::kAnyHit : wide::Question::kFirstHit;
   TraceCounters total;
   std::mutex adding;

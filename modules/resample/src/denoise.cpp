@@ -1,6 +1,7 @@
 #include "denoise.h"
 
 #include <isolux/core/parallel.h>
+#include <isolux/core/release.h>
 
 #include <algorithm>
 #include <array>
@@ -261,7 +262,8 @@ SampleSet denoised(const Volume& volume, const SampleSet& samples, const Run& ru
     result.radiance = Denoiser(volume, samples, run).light();
     return result;
   }
-  result.lamps = result.lamps_variance = {};
+  release(result.lamps);
+  release(result.lamps_variance);
   result.radiance = samples.lamps;
   result.variance = samples.lamps_variance;
   const std::vector<float> lamps = Denoiser(volume, result, run).light();

@@ -7,6 +7,16 @@
 #include <cmath>
 
 namespace isolux {
+namespace {
+
+void require_finite(const SampleSet& samples) {
+  const auto finite = [](float x) { return std::isfinite(x); };
+  if (!std::all_of(samples.radiance.begin(), samples.radiance.end(), finite)) {
+    throw InvalidInput("a sample's radiance is infinite or not a number: it must be finite");
+  }
+}
+
+}  // namespace
 
 void require_samples(const SampleSet& samples) {
   const std::size_t n = samples.size();
@@ -23,10 +33,16 @@ void require_samples(const SampleSet& samples) {
         n, samples.channels, sites.isovalues.size(), sites.normals.size(), samples.radiance.size(),
         samples.variance.size()));
   }
-  const auto finite = [](float x) { return std::isfinite(x); };
-  if (!std::all_of(samples.radiance.begin(), samples.radiance.end(), finite)) {
-    throw InvalidInput("a sample's radiance is infinite or not a number: it must be finite");
+  require_finite(samples);
+}
+
+void require_placed(const SampleSet& samples) {
+  const std::size_t n = samples.size();
+  if (samples.radiance.size() != n * std::size_t(samples.channels)) {
+    throw InvalidInput(fmt::format("{} positions of {} channels with {} radiances: one of each is needed", n,
+                                   samples.channels, samples.radiance.size()));
   }
+  require_finite(samples);
 }
 
 }  // namespace isolux

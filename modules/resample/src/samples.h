@@ -7,5 +7,7 @@ namespace isolux {
 /// \throw InvalidInput if there are no samples, or their arrays do not have one length or hold values that are not
 /// finite.
 void require_samples(const SampleSet& samples);
+/// The same of positions and their light alone, perhaps none.
+void require_placed(const SampleSet& samples);
 
 }  // namespace isolux

@@ -2,8 +2,11 @@
 #include <isolux/core/error.h>
 #include <isolux/resample.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
+#include <utility>
 
 #include "support.h"
 
@@ -69,6 +72,38 @@ TEST(Direct, LeavesTexelsWithoutSampleUnlit) {
   const ResampledGrid result = resamplers().create("direct")->resample(volume, samples, texels, {});
   for (std::size_t t = 0; t < texels.count(); ++t) EXPECT_EQ(result.lit[t], t == texels.offset(1, 0, 2) ? 1 : 0);
   EXPECT_EQ(result.grid.values[texels.offset(1, 0, 2)], 3.0f);
+}
+
+/// Samples [begin, end) without what parts may lack.
+SampleSet part_of(const SampleSet& all, std::size_t begin, std::size_t end) {
+  const auto channels = std::size_t(all.channels);
+  SampleSet part;
+  part.channels = all.channels;
+  part.sites.positions = {all.sites.positions.begin() + std::ptrdiff_t(begin),
+                          all.sites.positions.begin() + std::ptrdiff_t(end)};
+  part.radiance = {all.radiance.begin() + std::ptrdiff_t(begin * channels),
+                   all.radiance.begin() + std::ptrdiff_t(end * channels)};
+  return part;
+}
+
+TEST(Direct, MakesOfPartsWhatItMakesOfAll) {
+  const Volume volume = ramp_volume({5, 6, 7});
+  const Lattice texels = cell_lattice(volume.lattice());
+  const SampleSet all = part_of(one_a_texel(volume, texels), 7, texels.count());  // some texels stay unlit
+  const auto direct = resamplers().create("direct");
+  ASSERT_TRUE(direct->takes_parts());
+  IlluminationGrid grid = unlit_grid(texels, all.channels);
+  for (std::size_t begin = 0; begin < all.size(); begin += 20)
+    direct->add_part(volume, part_of(all, begin, std::min(begin + 20, all.size())), grid, {});
+  const ResampledGrid parts = told_by_bytes(std::move(grid));
+  SampleSet same = one_a_texel(volume, texels);
+  for (auto* array : {&same.sites.positions, &same.sites.normals}) array->erase(array->begin(), array->begin() + 7);
+  for (auto* array : {&same.sites.isovalues, &same.variance}) array->erase(array->begin(), array->begin() + 7);
+  same.radiance.erase(same.radiance.begin(), same.radiance.begin() + 7 * same.channels);
+  const ResampledGrid at_once = direct->resample(volume, same, texels, {});
+  EXPECT_EQ(parts.lit, at_once.lit);
+  EXPECT_EQ(parts.grid.values, at_once.grid.values);  // no NaN is left
+  EXPECT_EQ(std::count(parts.lit.begin(), parts.lit.end(), std::uint8_t(0)), 7);
 }
 
 TEST(Direct, AveragesSamplesAtOneTexel) {

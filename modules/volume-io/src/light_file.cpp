@@ -190,7 +190,11 @@ void write_light(const LightFile& light, const std::string& path, const std::str
   }
   write_atomically(path, [&](std::ostream& out) {
     detail::write_nrrd_header(out, image);
-    detail::write_nrrd_values(out, image, sloped || light.inner ? interleave(sides) : light.grid.values);
+    if (sloped || light.inner) {
+      detail::write_nrrd_values(out, image, interleave(sides));
+    } else {
+      detail::write_nrrd_values(out, image, light.grid.values);
+    }
   });
 }
 

@@ -12,6 +12,7 @@
 #include <isolux/core/parallel.h>
 #include <isolux/core/random.h>
 #include <isolux/core/registry.h>
+#include <isolux/core/release.h>
 #include <isolux/core/run.h>
 #include <isolux/core/sample_set.h>
 #include <isolux/core/spread_labels.h>

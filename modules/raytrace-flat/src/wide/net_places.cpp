@@ -22,35 +22,58 @@ Cell cell_of(const Vec3f& position, int cube) {
   return {index(position.x), index(position.y), index(position.z)};
 }
 
-/// Numbers the sites of each cell, from 0 and up to 255. How many share one, on average.
-double number_in_cells(const Sites& sites, int cube, std::vector<std::uint8_t>& orders) {
+/// The lattice of the cells that hold the sites.
+struct CellRows {
   Cell end{0, 0, 0};
-  for (const Vec3f& position : sites.positions) {
-    const Cell cell = cell_of(position, cube);
-    end = {std::max(end.x, cell.x + 1), std::max(end.y, cell.y + 1), std::max(end.z, cell.z + 1)};
+
+  CellRows(const Sites& sites, int cube) {
+    for (const Vec3f& position : sites.positions) {
+      const Cell cell = cell_of(position, cube);
+      end = {std::max(end.x, cell.x + 1), std::max(end.y, cell.y + 1), std::max(end.z, cell.z + 1)};
+    }
   }
-  std::vector<std::uint8_t> counts(std::size_t(end.x) * end.y * end.z);
+  [[nodiscard]] std::size_t count() const { return std::size_t(end.x) * end.y * end.z; }
+  [[nodiscard]] std::size_t offset(const Cell& cell) const {
+    return (std::size_t(cell.z) * end.y + cell.y) * end.x + cell.x;
+  }
+};
+
+/// How many sites share a cell that holds any, on average: a bit a cell.
+double sites_a_cell(const Sites& sites, int cube) {
+  const CellRows rows(sites, cube);
+  std::vector<bool> holds_any(rows.count());
   std::size_t cells = 0;
-  for (std::size_t site = 0; site < sites.size(); ++site) {
-    const Cell cell = cell_of(sites.positions[site], cube);
-    std::uint8_t& count = counts[(std::size_t(cell.z) * end.y + cell.y) * end.x + cell.x];
-    cells += std::size_t(count == 0);
-    orders[site] = count;
-    if (count < 255) ++count;
+  for (const Vec3f& position : sites.positions) {
+    const std::size_t cell = rows.offset(cell_of(position, cube));
+    cells += std::size_t(!holds_any[cell]);
+    holds_any[cell] = true;
   }
   return cells == 0 ? 0.0 : double(sites.size()) / double(cells);
 }
 
+/// The number of each site among those of its cell, from 0 and up to 255: a byte a cell while it lasts.
+std::vector<std::uint8_t> number_in_cells(const Sites& sites, int cube) {
+  const CellRows rows(sites, cube);
+  std::vector<std::uint8_t> counts(rows.count());
+  std::vector<std::uint8_t> orders(sites.size());
+  for (std::size_t site = 0; site < sites.size(); ++site) {
+    std::uint8_t& count = counts[rows.offset(cell_of(sites.positions[site], cube))];
+    orders[site] = count;
+    if (count < 255) ++count;
+  }
+  return orders;
+}
+
 }  // namespace
 
-NetPlaces::NetPlaces(const Sites& sites) : orders_(sites.size()) {
-  const double shared = number_in_cells(sites, 0, orders_);
+NetPlaces::NetPlaces(const Sites& sites) {
+  const double shared = sites_a_cell(sites, 0);
   if (shared > kAlone) {
     crowd_ = std::clamp(int(std::lround(std::log2(shared))), 0, kMostCrowd);
+    orders_ = number_in_cells(sites, 0);
     return;
   }
-  while (cube_ < kCoarsest && number_in_cells(sites, cube_ + 1, orders_) <= kAlone) ++cube_;
-  orders_ = {};
+  while (cube_ < kCoarsest && sites_a_cell(sites, cube_ + 1) <= kAlone) ++cube_;
 }
 
 NetPlaces::Place NetPlaces::of(const Sites& sites, std::size_t site) const {

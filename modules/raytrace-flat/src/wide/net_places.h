@@ -15,7 +15,8 @@ namespace isolux::wide {
 /// via hierarchical ordering of pixels" (SIGGRAPH Asia 2020). Immutable.
 class NetPlaces {
  public:
-  /// Finds how densely the sites lie: one pass, a byte a cell while it lasts, and a byte a site that shares its cell.
+  /// Finds how densely the sites lie: a few passes, a bit a cell while they last; where sites share cells a byte a
+  /// cell, and a byte a site.
   explicit NetPlaces(const Sites& sites);
 
   struct Place {

@@ -6,12 +6,10 @@
 #include <array>
 #include <cstring>
 
-#include "wide/level_rank.h"
-
 namespace isolux::wide {
 namespace {
 
-constexpr std::size_t kBrickCells = 64;
+constexpr std::size_t kBrickBytes = 32;  // of codes
 /// A leap's code c stands for this many bricks, as kernels compute it: c + 1 + max(0, c - 3).
 constexpr int kLeapOfCode[8] = {1, 2, 3, 4, 6, 8, 10, 12};
 
@@ -84,28 +82,42 @@ class Obstacles {
 
 }  // namespace
 
-CellCodes::CellCodes(const FieldView& field, std::span<const float> thresholds, const Run& run)
-    : bricks_(brick_count(field.size)),
-      codes_(std::size_t(bricks_.x) * std::size_t(bricks_.y) * std::size_t(bricks_.z) * kBrickCells, 0) {
-  const LevelRank rank(thresholds);
-  const std::size_t row = std::size_t(bricks_.x) * kBrickCells;
+CellCodes::CellCodes(const FieldView& field)
+    : field_(field),
+      bricks_(brick_count(field.size)),
+      codes_(std::size_t(bricks_.x) * std::size_t(bricks_.y) * std::size_t(bricks_.z) * kBrickBytes) {}
+
+void CellCodes::build(std::span<const float> thresholds, const Run& run) {
+  const std::size_t row = std::size_t(bricks_.x) * kBrickBytes;
+  const std::size_t layer = row * std::size_t(bricks_.y);
   parallel_blocks(std::size_t(bricks_.z), 1, run, "", [&](const Block& block) {
-    std::vector<float> largest(std::size_t(field.size.x));
+    std::vector<float> largest(std::size_t(field_.size.x));
+    std::vector<std::uint8_t> ranks(std::size_t(bricks_.x * kBrick));  // those beyond the last cell stay 0
+    const std::size_t cells = largest.size() - 1;
+    std::fill_n(codes_.begin() + std::ptrdiff_t(block.begin * layer), layer, std::uint8_t(0));
     const int first = int(block.begin) * kBrick;
-    for (int k = first; k < std::min(first + kBrick, field.size.z - 1); ++k) {
-      for (int j = 0; j + 1 < field.size.y; ++j) {
-        row_maxima(field, j, k, largest);
-        std::uint8_t* out = codes_.data() + (block.begin * std::size_t(bricks_.y) + std::size_t(j / kBrick)) * row +
-                            std::size_t(k % kBrick * 16 + j % kBrick * 4);
-        for (std::size_t i = 0; i + 1 < largest.size(); ++i)
-          out[i / kBrick * kBrickCells + i % kBrick] = std::uint8_t(rank.reached(largest[i]));
+    for (int k = first; k < std::min(first + kBrick, field_.size.z - 1); ++k) {
+      for (int j = 0; j + 1 < field_.size.y; ++j) {
+        row_maxima(field_, j, k, largest);
+        rank_values(std::span(largest).first(cells), thresholds, std::span(ranks).first(cells));
+        const int half = k % kBrick / 2;
+        std::uint8_t* out = codes_.data() + block.begin * layer + std::size_t(j / kBrick) * row +
+                            std::size_t(k % 2 * 16 + j % kBrick * 4);
+        for (std::size_t b = 0; b < std::size_t(bricks_.x); ++b) {
+          std::uint32_t four = 0;
+          std::uint32_t other = 0;
+          std::memcpy(&four, &ranks[b * kBrick], 4);
+          std::memcpy(&other, out + b * kBrickBytes, 4);
+          other |= four << (4 * half);  // ranks are below 16, so nothing is carried
+          std::memcpy(out + b * kBrickBytes, &other, 4);
+        }
       }
     }
   });
 }
 
 Occupancy::Occupancy(const CellCodes& codes) : bricks_(codes.bricks()) {
-  const std::size_t count = codes.codes().size() / kBrickCells;
+  const std::size_t count = codes.codes().size() / kBrickBytes;
   words_.resize(2 * count);
   for (auto& octant : leaps_) octant.resize(count + 8);
   const std::size_t row = (std::size_t(bricks_.x) + 63) / 64;
@@ -115,9 +127,9 @@ Occupancy::Occupancy(const CellCodes& codes) : bricks_(codes.bricks()) {
 void Occupancy::build(const CellCodes& codes, int index, const Run& run) {
   constexpr std::size_t kBricksABlock = 8192;
   const std::span<const std::uint8_t> bytes = codes.codes();
-  parallel_blocks(bytes.size() / kBrickCells, kBricksABlock, run, "", [&](const Block& block) {
-    pack_bits(bytes.subspan(block.begin * kBrickCells, (block.end - block.begin) * kBrickCells), std::uint8_t(index),
-              words_.data() + 2 * block.begin);
+  parallel_blocks(bytes.size() / kBrickBytes, kBricksABlock, run, "", [&](const Block& block) {
+    pack_half_bits(bytes.subspan(block.begin * kBrickBytes, (block.end - block.begin) * kBrickBytes),
+                   std::uint8_t(index), words_.data() + 2 * block.begin);
   });
   find_occupied();
   parallel_blocks(std::size(leaps_), 1, run, "",

@@ -13,20 +13,24 @@ namespace isolux::wide {
 /// Cells along an axis of a brick.
 inline constexpr int kBrick = 4;
 
-/// For every cell, how many of a rising list of thresholds its largest value reaches (smallest, for the outer side of
-/// higher values; thresholds are then negated isovalues). One byte a cell, brick by brick, 64 bytes each: the occupancy
-/// for any threshold is then a compare of bytes. Rays run on the outer side, so no other extreme of a cell matters.
+/// For every cell, how many of a few rising thresholds its largest value reaches (smallest, for the outer side of
+/// higher values; thresholds are then negated isovalues). Half a byte a cell, brick by brick, 32 bytes each: the cells
+/// z < 2 in the lower halves, those above them in the upper ones. The occupancy for any of the thresholds is then a
+/// compare of bytes. Rays run on the outer side, so no other extreme of a cell matters.
 class CellCodes {
  public:
-  static constexpr std::size_t kMaxThresholds = 255;
+  static constexpr std::size_t kMaxThresholds = 15;
+
+  explicit CellCodes(const FieldView& field);
 
   /// \pre at most kMaxThresholds. Cost: one pass over the volume.
-  CellCodes(const FieldView& field, std::span<const float> thresholds, const Run& run);
+  void build(std::span<const float> thresholds, const Run& run);
 
   [[nodiscard]] Index3 bricks() const { return bricks_; }
   [[nodiscard]] std::span<const std::uint8_t> codes() const { return codes_; }
 
  private:
+  FieldView field_;
   Index3 bricks_{0};
   std::vector<std::uint8_t> codes_;
 };
@@ -38,7 +42,8 @@ class Occupancy {
  public:
   explicit Occupancy(const CellCodes& codes);
 
-  /// For isovalues of the threshold `index` and above. Cost: one compare a cell byte; the distances are bit operations.
+  /// For isovalues of the threshold `index` of the codes and above. Cost: two compares a byte; the distances are bit
+  /// operations.
   void build(const CellCodes& codes, int index, const Run& run);
   /// \pre built
   [[nodiscard]] OccupancyView view() const { return {words_.data(), bricks_}; }
@@ -54,7 +59,11 @@ class Occupancy {
   std::vector<std::uint64_t> occupied_;  ///< a bit a brick, rows of whole words
 };
 
-/// Bit i of out[i / 32] is set where codes[i] > index; `codes` in whole bricks.
+/// Bit i of out[i / 32] is set where codes[i] > index; `codes` a multiple of 32.
 void pack_bits(std::span<const std::uint8_t> codes, std::uint8_t index, std::uint32_t* out);
+/// The same of codes of half a byte, 32 bytes at a time: bits of their lower halves, then of their upper ones.
+void pack_half_bits(std::span<const std::uint8_t> codes, std::uint8_t index, std::uint32_t* out);
+/// How many of the thresholds each value reaches. \pre at most 255; as many ranks as values
+void rank_values(std::span<const float> values, std::span<const float> thresholds, std::span<std::uint8_t> ranks);
 
 }  // namespace isolux::wide

@@ -33,6 +33,57 @@ void pack(std::span<const std::uint8_t> codes, std::uint8_t index, std::uint32_t
   }
 }
 
+void pack_halves(std::span<const std::uint8_t> codes, std::uint8_t index, std::uint32_t* out) {
+  for (std::size_t i = 0; i < codes.size(); i += 32) {
+#if HWY_TARGET == HWY_SCALAR
+    std::uint32_t lower = 0;
+    std::uint32_t upper = 0;
+    for (std::size_t c = 0; c < 32; ++c) {
+      lower |= std::uint32_t((codes[i + c] & 15) > index) << c;
+      upper |= std::uint32_t((codes[i + c] >> 4) > index) << c;
+    }
+    *out++ = lower;
+    *out++ = upper;
+#else
+    const hn::CappedTag<std::uint8_t, 32> d;
+    const std::size_t lanes = hn::Lanes(d);
+    const auto limit = hn::Set(d, index);
+    // An upper half is greater if the whole byte is greater than `index` with all lower bits set.
+    const auto upper_limit = hn::Set(d, std::uint8_t(index << 4 | 15));
+    const auto lower_half = hn::Set(d, std::uint8_t(15));
+    std::uint8_t lower[8] = {};  // StoreMaskBits may write eight bytes
+    std::uint8_t upper[8] = {};
+    for (std::size_t part = 0; part < 32; part += lanes) {
+      const auto both = hn::LoadU(d, codes.data() + i + part);
+      hn::StoreMaskBits(d, hn::Gt(hn::And(both, lower_half), limit), lower + part / 8);
+      hn::StoreMaskBits(d, hn::Gt(both, upper_limit), upper + part / 8);
+    }
+    std::memcpy(out++, lower, 4);
+    std::memcpy(out++, upper, 4);
+#endif
+  }
+}
+
+void rank(std::span<const float> values, std::span<const float> thresholds, std::span<std::uint8_t> ranks) {
+  const hn::ScalableTag<float> d;
+  const hn::RebindToSigned<decltype(d)> di;
+  const hn::Rebind<std::uint8_t, decltype(d)> bytes;
+  const std::size_t lanes = hn::Lanes(d);
+  std::size_t i = 0;
+  for (; i + lanes <= values.size(); i += lanes) {
+    const auto value = hn::LoadU(d, values.data() + i);
+    auto count = hn::Zero(di);
+    for (const float threshold : thresholds)  // a mask's lanes are -1
+      count = hn::Sub(count, hn::VecFromMask(di, hn::RebindMask(di, hn::Ge(value, hn::Set(d, threshold)))));
+    hn::StoreU(hn::DemoteTo(bytes, count), bytes, ranks.data() + i);
+  }
+  for (; i < values.size(); ++i) {
+    std::size_t count = 0;
+    for (const float threshold : thresholds) count += std::size_t(values[i] >= threshold);
+    ranks[i] = std::uint8_t(count);
+  }
+}
+
 }  // namespace HWY_NAMESPACE
 }  // namespace isolux::wide
 HWY_AFTER_NAMESPACE();
@@ -41,9 +92,19 @@ HWY_AFTER_NAMESPACE();
 namespace isolux::wide {
 
 HWY_EXPORT(pack);
+HWY_EXPORT(pack_halves);
+HWY_EXPORT(rank);
 
 void pack_bits(std::span<const std::uint8_t> codes, std::uint8_t index, std::uint32_t* out) {
   HWY_DYNAMIC_DISPATCH(pack)(codes, index, out);
+}
+
+void pack_half_bits(std::span<const std::uint8_t> codes, std::uint8_t index, std::uint32_t* out) {
+  HWY_DYNAMIC_DISPATCH(pack_halves)(codes, index, out);
+}
+
+void rank_values(std::span<const float> values, std::span<const float> thresholds, std::span<std::uint8_t> ranks) {
+  HWY_DYNAMIC_DISPATCH(rank)(values, thresholds, ranks);
 }
 
 }  // namespace isolux::wide

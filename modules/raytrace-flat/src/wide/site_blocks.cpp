@@ -5,13 +5,18 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
 #include <limits>
+#include <optional>
 #include <span>
 #include <utility>
 #include <vector>
 
 #include "wide/inner.h"
+#include "wide/level_rank.h"
 #include "wide/occupancy.h"
 
 namespace isolux::wide {
@@ -19,6 +24,11 @@ namespace {
 
 /// Buckets whose sites are gathered and sorted at once: few, to save memory; several, to save passes over the sites.
 constexpr std::size_t kBucketsAGroup = 4;
+constexpr std::size_t kSitesAGroup = std::size_t(1) << 17;
+/// Buckets whose cell codes are made at once.
+constexpr std::size_t kBucketsACode = CellCodes::kMaxThresholds;
+/// Whose inner cubes are told by a byte.
+constexpr std::size_t kMostBuckets = 255;
 constexpr std::size_t kSitesAPass = 65536;
 
 /// Bits of a cell index spread to every third place (for the Morton order).
@@ -61,7 +71,14 @@ std::size_t bucket_count(const Volume& volume, const Sites& sites, const BlockRe
   const double bricks = double(volume.lattice().count()) / 64.0;
   const double rays = double(sites.size()) * double(request.rays_per_site);
   const double pays = std::sqrt(kWideOverBrick * share_of_values(volume, sites) * rays / bricks);
-  return std::size_t(std::clamp(pays, 1.0, double(CellCodes::kMaxThresholds)));
+  return std::size_t(std::clamp(pays, 1.0, double(kMostBuckets)));
+}
+
+/// Whether finding cubes of inner values costs less than proofs save: some 9 ns a cube and 50 ns a ray.
+bool has_proofs(const Volume& volume, const Sites& sites, const BlockRequest& request) {
+  constexpr double kRaysACube = 0.2;
+  const double cubes = double(volume.lattice().count()) / 8.0;
+  return request.proofs && double(sites.size()) * double(request.rays_per_site) >= kRaysACube * cubes;
 }
 
 /// Rising thresholds that share the sites out evenly; the first is below all of them.
@@ -108,41 +125,104 @@ struct BucketLevels {
   }
 };
 
-struct Entry {
-  std::uint64_t place;  ///< along Morton's curve
-  std::uint32_t site;
-  bool operator<(const Entry& other) const { return place != other.place ? place < other.place : site < other.site; }
-};
-using Bucket = std::vector<Entry>;
+/// A site's place along Morton's curve, and below it its number.
+using Entry = std::uint64_t;
+constexpr int kNumberBits = 32;
 
-/// The sites of the buckets from `first` on, as many as a group has, each bucket in Morton order.
-std::vector<Bucket> collect(const Sites& sites, OuterSide outer, const std::vector<float>& thresholds,
-                            std::size_t first, const Run& run) {
-  const std::size_t last = std::min(thresholds.size(), first + kBucketsAGroup);
-  std::vector<std::array<Bucket, kBucketsAGroup>> parts(block_count(sites.size(), kSitesAPass));
-  const float low = thresholds[first];
-  const float high = last < thresholds.size() ? thresholds[last] : std::numeric_limits<float>::infinity();
-  parallel_blocks(sites.size(), kSitesAPass, run, "", [&](const Block& block) {
-    auto& part = parts[block.index];
-    for (std::size_t i = block.begin; i < block.end; ++i) {
-      const float value = signed_isovalue(sites.isovalues[i], outer);
-      if (!(value >= low && value < high)) continue;
-      std::size_t bucket = 0;
-      while (first + bucket + 1 < last && value >= thresholds[first + bucket + 1]) ++bucket;
-      part[bucket].push_back({morton(sites.positions[i]) >> 7, std::uint32_t(i)});
+std::uint32_t number_of(Entry entry) { return std::uint32_t(entry); }
+
+/// The sites in buckets of isovalues, of which some are listed at a time.
+class SiteBuckets {
+ public:
+  /// `least`: of each bucket's signed isovalues; none is below the first.
+  SiteBuckets(const Sites& sites, OuterSide outer, const std::vector<float>& least, const Index3& size, const Run& run)
+      : sites_(sites), outer_(outer), least_(least), counts_(block_count(sites.size(), kSitesAPass) * least.size()) {
+    // Whole bricks would do; large volumes keep what a number leaves of the place.
+    const int bits = 3 * int(std::bit_width(unsigned(std::max({size.x, size.y, size.z}))));
+    coarser_ = std::max(kPlaceBits, bits - kNumberBits);
+    const LevelRank rank(least_);
+    parallel_blocks(sites.size(), kSitesAPass, run, "", [&](const Block& block) {
+      std::uint32_t* const counts = &counts_[block.index * least_.size()];
+      for (std::size_t i = block.begin; i < block.end; ++i) {
+        const float value = signed_isovalue(sites_.isovalues[i], outer_);
+        if (value >= least_.front() && value < kBeyondAll) ++counts[rank.reached(value) - 1];
+      }
+    });
+  }
+
+  [[nodiscard]] bool has_listed(std::size_t bucket) const { return bucket >= first_ && bucket < last_; }
+  /// Lists those of the buckets from `first` on, a few or some sites, each bucket in Morton order.
+  void list(std::size_t first, const Run& run) {
+    first_ = first;
+    last_ = group_end();
+    const std::vector<std::size_t> begins = place_parts();
+    const float low = least_[first_];
+    const float high = last_ < least_.size() ? least_[last_] : kBeyondAll;
+    parallel_blocks(sites_.size(), kSitesAPass, run, "", [&](const Block& block) {
+      std::array<std::size_t, kBucketsAGroup> next{};
+      std::copy_n(&begins[block.index * kBucketsAGroup], kBucketsAGroup, next.begin());
+      for (std::size_t i = block.begin; i < block.end; ++i) {
+        const float value = signed_isovalue(sites_.isovalues[i], outer_);
+        if (!(value >= low && value < high)) continue;
+        std::size_t bucket = first_;
+        while (bucket + 1 < last_ && value >= least_[bucket + 1]) ++bucket;
+        entries_[next[bucket - first_]++] = morton(sites_.positions[i]) >> coarser_ << kNumberBits | i;
+      }
+    });
+    parallel_blocks(last_ - first_, 1, run, "", [&](const Block& block) {
+      std::sort(entries_.begin() + std::ptrdiff_t(bucket_begins_[block.index]),
+                entries_.begin() + std::ptrdiff_t(bucket_begins_[block.index + 1]));
+    });
+  }
+
+  /// Those of a bucket that is listed.
+  [[nodiscard]] std::span<const Entry> at(std::size_t bucket) const {
+    const std::size_t begin = bucket_begins_[bucket - first_];
+    return std::span(entries_).subspan(begin, bucket_begins_[bucket - first_ + 1] - begin);
+  }
+
+ private:
+  /// As few buckets as make some sites, so that a part of the volume's sites, in a few large buckets, is not listed
+  /// all at once.
+  [[nodiscard]] std::size_t group_end() const {
+    std::size_t last = first_;
+    for (std::size_t count = 0; last < std::min(least_.size(), first_ + kBucketsAGroup); ++last) {
+      for (std::size_t at = last; at < counts_.size(); at += least_.size()) count += counts_[at];
+      if (last > first_ && count > kSitesAGroup) break;
     }
-  });
-  std::vector<Bucket> buckets(last - first);
-  parallel_blocks(buckets.size(), 1, run, "", [&](const Block& block) {
-    Bucket& bucket = buckets[block.index];
-    for (auto& part : parts) {
-      const Bucket found = std::exchange(part[block.index], {});
-      bucket.insert(bucket.end(), found.begin(), found.end());
+    return last;
+  }
+
+  static constexpr int kPlaceBits = 7;  ///< of Morton's curve that do not matter
+  static constexpr float kBeyondAll = std::numeric_limits<float>::infinity();
+
+  /// Where each part of the sites puts those of each bucket of the group.
+  [[nodiscard]] std::vector<std::size_t> place_parts() {
+    const std::size_t parts = counts_.size() / least_.size();
+    std::vector<std::size_t> begins(parts * kBucketsAGroup);
+    std::size_t next = 0;
+    for (std::size_t bucket = first_; bucket < last_; ++bucket) {
+      bucket_begins_[bucket - first_] = next;
+      for (std::size_t part = 0; part < parts; ++part) {
+        begins[part * kBucketsAGroup + bucket - first_] = next;
+        next += counts_[part * least_.size() + bucket];
+      }
     }
-    std::sort(bucket.begin(), bucket.end());
-  });
-  return buckets;
-}
+    bucket_begins_[last_ - first_] = next;
+    entries_.resize(next);
+    return begins;
+  }
+
+  const Sites& sites_;
+  OuterSide outer_;
+  const std::vector<float>& least_;
+  std::vector<std::uint32_t> counts_;  ///< of each part of the sites, by bucket
+  int coarser_ = kPlaceBits;
+  std::size_t first_ = 0;  ///< of the buckets that are listed
+  std::size_t last_ = 0;
+  std::array<std::size_t, kBucketsAGroup + 1> bucket_begins_{};
+  std::vector<Entry> entries_;
+};
 
 }  // namespace
 
@@ -155,31 +235,34 @@ void for_each_block(const Volume& volume, const Sites& sites, const BlockRequest
   if (sites.size() == 0) return;
   const FieldView field{volume.values.values().data(), lattice.size, request.outer};
   const BucketLevels levels(volume, sites, request);
-  const CellCodes codes(field, levels.thresholds, run);
-  const InnerCodes inner_codes(field, levels.ceilings, run);
+  CellCodes codes(field);
+  std::optional<InnerCodes> inner_codes;
+  std::optional<InnerCubes> inner;
+  if (has_proofs(volume, sites, request)) inner.emplace(inner_codes.emplace(field, levels.ceilings, run));
   Occupancy occupancy(codes);
-  InnerCubes inner(inner_codes);
+  SiteBuckets buckets(sites, request.outer, levels.least, lattice.size, run);
   std::size_t done = 0;
-  for (std::size_t first = 0; first < levels.least.size(); first += kBucketsAGroup) {
-    const std::vector<Bucket> group = collect(sites, request.outer, levels.least, first, run);
-    for (std::size_t b = 0; b < group.size(); ++b) {
-      const Bucket& entries = group[b];
-      if (entries.empty()) continue;
-      const std::size_t bucket = first + b;
-      occupancy.build(codes, int(bucket), run);
-      inner.build(inner_codes, int(bucket), run);
-      const auto all = double(sites.size());
-      const Run part = part_of(run, double(done) / all, double(done + entries.size()) / all);
-      parallel_blocks(entries.size(), request.sites_per_block, part, stage, [&](const Block& block) {
-        std::vector<std::uint32_t> numbers;
-        for (std::size_t i = block.begin; i < block.end; ++i) numbers.push_back(entries[i].site);
-        SiteBlock sites_of_block{numbers, field, occupancy.view(), inner.view()};
-        sites_of_block.occupancy.threshold = signed_isovalue(levels.thresholds[bucket], request.outer);
-        sites_of_block.inner.ceiling = levels.highest[bucket];
-        body(sites_of_block);
-      });
-      done += entries.size();
+  for (std::size_t bucket = 0; bucket < levels.least.size(); ++bucket) {
+    if (bucket % kBucketsACode == 0) {
+      const std::size_t count = std::min(kBucketsACode, levels.least.size() - bucket);
+      codes.build(std::span(levels.thresholds).subspan(bucket, count), run);
     }
+    if (!buckets.has_listed(bucket)) buckets.list(bucket, run);
+    const std::span<const Entry> entries = buckets.at(bucket);
+    if (entries.empty()) continue;
+    occupancy.build(codes, int(bucket % kBucketsACode), run);
+    if (inner) inner->build(*inner_codes, int(bucket), run);
+    const auto all = double(sites.size());
+    const Run part = part_of(run, double(done) / all, double(done + entries.size()) / all);
+    parallel_blocks(entries.size(), request.sites_per_block, part, stage, [&](const Block& block) {
+      std::vector<std::uint32_t> numbers;
+      for (std::size_t i = block.begin; i < block.end; ++i) numbers.push_back(number_of(entries[i]));
+      SiteBlock sites_of_block{numbers, field, occupancy.view(), inner ? inner->view() : InnerView{}};
+      sites_of_block.occupancy.threshold = signed_isovalue(levels.thresholds[bucket], request.outer);
+      sites_of_block.inner.ceiling = levels.highest[bucket];
+      body(sites_of_block);
+    });
+    done += entries.size();
   }
 }
 

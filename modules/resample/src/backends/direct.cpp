@@ -1,10 +1,15 @@
 #include <fmt/format.h>
 #include <isolux/core/error.h>
+#include <isolux/core/parallel.h>
 #include <isolux/resample/resampler.h>
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <optional>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "denoise.h"
 #include "near_field.h"
@@ -16,6 +21,8 @@ namespace {
 
 /// Float positions of sites at texel centres are off by less than this up to some 10,000 voxels an axis.
 constexpr double kTolerance = 0.01;
+/// Samples whose texels are found together.
+constexpr std::size_t kSamplesAPass = 65536;
 
 /// The texel whose centre is at `at` (texel index space).
 std::optional<std::size_t> texel_at(const Lattice& texels, const Vec3& at) {
@@ -45,19 +52,20 @@ class Direct final : public Resampler {
   ResampledGrid resample(const Volume& volume, const SampleSet& samples, const Lattice& texels,
                          const Run& run) const override {
     require_samples(samples);
-    ResampledGrid result = unlit_grid(texels, samples.channels);
+    IlluminationGrid result = unlit_grid(texels, samples.channels);
     if (options_.denoise) {
       place(volume, denoised(volume, samples, run), result, run);
     } else {
       place(volume, samples, result, run);
     }
-    return result;
+    return told_by_bytes(std::move(result));
   }
 
   [[nodiscard]] bool takes_parts() const override { return !options_.denoise; }
 
-  void add_part(const Volume& volume, const SampleSet& samples, ResampledGrid& texels, const Run& run) const override {
-    require_samples(samples);
+  void add_part(const Volume& volume, const SampleSet& samples, IlluminationGrid& texels,
+                const Run& run) const override {
+    require_placed(samples);
     place(volume, samples, texels, run);
   }
 
@@ -72,29 +80,37 @@ class Direct final : public Resampler {
   }
 
  private:
-  static void place(const Volume& volume, const SampleSet& samples, ResampledGrid& result, const Run& run) {
-    const Lattice& texels = result.grid.lattice;
+  static void place(const Volume& volume, const SampleSet& samples, IlluminationGrid& result, const Run& run) {
+    const Lattice& texels = result.lattice;
     const IndexToWorld to_texels = index_to_index(volume.lattice(), texels);
     const auto channels = std::size_t(samples.channels);
     std::vector<std::size_t> repeated;
-    for (std::size_t s = 0; s < samples.size(); ++s) {
-      if (s % 65536 == 0) throw_if_stopped(run);
-      const Vec3f& position = samples.sites.positions[s];
-      const std::optional<std::size_t> texel = texel_at(texels, to_texels.world(Vec3(position)));
-      if (!texel) {
-        throw InvalidInput(fmt::format(
-            "sample {} at index ({}, {}, {}) is not at a texel centre: resampler direct needs a sampler that puts its "
-            "sites there, such as texels; any other resampler takes scattered sites",
-            s, position.x, position.y, position.z));
+    std::vector<std::optional<std::size_t>> found(kSamplesAPass);
+    for (std::size_t first = 0; first < samples.size(); first += kSamplesAPass) {
+      const std::size_t count = std::min(kSamplesAPass, samples.size() - first);
+      parallel_blocks(count, kSamplesAPass / 16, run, "", [&](const Block& block) {
+        for (std::size_t i = block.begin; i < block.end; ++i)
+          found[i] = texel_at(texels, to_texels.world(Vec3(samples.sites.positions[first + i])));
+      });
+      for (std::size_t i = 0; i < count; ++i) {
+        if (!found[i]) throw InvalidInput(not_at_a_texel(samples, first + i));
+        float* const values = &result.values[*found[i] * channels];
+        if (std::isnan(*values)) {
+          std::copy_n(&samples.radiance[(first + i) * channels], channels, values);
+        } else {
+          repeated.push_back(first + i);
+        }
       }
-      if (result.lit[*texel] != 0) {
-        repeated.push_back(s);
-        continue;
-      }
-      result.lit[*texel] = 1;
-      std::copy_n(&samples.radiance[s * channels], channels, &result.grid.values[*texel * channels]);
     }
-    add_repeated(samples, to_texels, repeated, result.grid);
+    add_repeated(samples, to_texels, repeated, result);
+  }
+
+  static std::string not_at_a_texel(const SampleSet& samples, std::size_t s) {
+    const Vec3f& position = samples.sites.positions[s];
+    return fmt::format(
+        "sample {} at index ({}, {}, {}) is not at a texel centre: resampler direct needs a sampler that puts its "
+        "sites there, such as texels; any other resampler takes scattered sites",
+        s, position.x, position.y, position.z);
   }
 
   /// Texels with several samples get their mean.

@@ -2,14 +2,21 @@
 #include <isolux/sample_sites/site_sampler.h>
 
 #include <algorithm>
-#include <cmath>
 #include <cstddef>
+#include <utility>
 #include <vector>
 
+#include "site_maker.h"
+#include "site_pieces.h"
 #include "texel_rows.h"
 
 namespace isolux {
 namespace {
+
+/// The rows of texels are taken in so many slabs: of a slab every texel may be looked at, of the others only sites
+/// stay.
+constexpr std::size_t kSlabs = 8;
+constexpr std::size_t kRowsABlock = 64;
 
 /// One site at the centre of every texel, in the texels' order.
 class TexelSampler final : public SiteSampler {
@@ -18,27 +25,35 @@ class TexelSampler final : public SiteSampler {
   explicit TexelSampler(const Options& /*options*/) {}
 
   [[nodiscard]] Sites sample(const Volume& volume, const SiteRequest& request, const Run& run) const override {
-    const Index3& size = request.texels.size;
     const TexelRows rows(volume, request.texels);
-    // Of a range most texels may lie outside: they cost no more than a look at their isovalue.
-    std::vector<std::vector<int>> columns(request.isovalues ? rows.count() : 0);
-    if (request.isovalues) {
-      parallel_blocks(rows.count(), 16, run, {}, [&](const Block& block) {
-        for (std::size_t r = block.begin; r < block.end; ++r) columns[r] = rows.columns_within(r, *request.isovalues);
+    const SiteMaker maker(volume, request);
+    const std::size_t slab = std::max(kRowsABlock, rows.count() / kSlabs);
+    SitePieces pieces;
+    for (std::size_t first = 0; first < rows.count(); first += slab) {
+      const std::size_t last = std::min(rows.count(), first + slab);
+      std::vector<Sites> found(block_count(last - first, kRowsABlock));
+      parallel_blocks(found.size(), 1, run, {}, [&](const Block& block) {
+        const std::size_t begin = first + block.index * kRowsABlock;
+        append_rows(rows, begin, std::min(last, begin + kRowsABlock), request, maker, found[block.index]);
       });
+      for (const Sites& sites : found) pieces.append(sites);
     }
-    std::vector<std::size_t> begins{0};
-    for (std::size_t r = 0; r < rows.count(); ++r)
-      begins.push_back(begins.back() + (request.isovalues ? columns[r].size() : std::size_t(size.x)));
-    std::vector<Vec3f> positions(begins.back());
-    parallel_blocks(rows.count(), 64, run, {}, [&](const Block& block) {
-      for (std::size_t r = block.begin; r < block.end; ++r) {
-        for (std::size_t n = 0; n < begins[r + 1] - begins[r]; ++n)
-          positions[begins[r] + n] = rows.position(r, request.isovalues ? columns[r][n] : int(n));
+    return std::move(pieces).joined();
+  }
+
+ private:
+  static void append_rows(const TexelRows& rows, std::size_t begin, std::size_t end, const SiteRequest& request,
+                          const SiteMaker& maker, Sites& sites) {
+    TexelRows::Scratch scratch;
+    for (std::size_t row = begin; row < end; ++row) {
+      if (request.isovalues) {
+        // Of a range most texels may lie outside: they cost no more than a look at their isovalue.
+        for (const int x : rows.columns_within(row, *request.isovalues, scratch))
+          maker.append(rows.position(row, x), sites);
+      } else {
+        for (int x = 0; x < request.texels.size.x; ++x) maker.append(rows.position(row, x), sites);
       }
-    });
-    columns = {};
-    return make_sites(volume, std::move(positions), request, run);
+    }
   }
 };
 

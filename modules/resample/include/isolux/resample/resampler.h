@@ -17,10 +17,10 @@ struct ResampledGrid {
   std::vector<std::uint8_t> lit;  ///< one a texel: 1 where grid has a value, 0 where fill_unlit() has to give one
 };
 
-/// A grid none of whose texels has light as yet.
-[[nodiscard]] inline ResampledGrid unlit_grid(const Lattice& texels, int channels) {
-  return {.grid = IlluminationGrid(texels, channels), .lit = std::vector<std::uint8_t>(texels.count(), 0)};
-}
+/// A grid none of whose texels has light as yet: NaN marks them, and takes no memory beside the values.
+[[nodiscard]] IlluminationGrid unlit_grid(const Lattice& texels, int channels);
+/// The same said by a byte a texel: what is NaN in such a grid is 0 and not lit.
+[[nodiscard]] ResampledGrid told_by_bytes(IlluminationGrid marked);
 
 /// The resample stage. Backends are immutable and callable from many threads.
 class Resampler {
@@ -40,8 +40,9 @@ class Resampler {
   /// Whether samples can be put into a grid part by part: what a sample gives to which texel depends on no other one.
   [[nodiscard]] virtual bool takes_parts() const { return false; }
   /// Puts more samples into `texels`, which begins as unlit_grid() of their channels; no two parts have samples for one
-  /// texel. All parts together are what resample() makes of all samples. \pre takes_parts() \throw as resample()
-  virtual void add_part(const Volume& volume, const SampleSet& samples, ResampledGrid& texels, const Run& run) const;
+  /// texel. All parts together, told_by_bytes(), are what resample() makes of all samples. Of the
+  /// sites only positions are looked at, isovalues and normals may be missing. \pre takes_parts() \throw as resample()
+  virtual void add_part(const Volume& volume, const SampleSet& samples, IlluminationGrid& texels, const Run& run) const;
 
   /// Gives a grid that was made of these samples, and perhaps of others like them, what LightReader wants beyond its
   /// values, once they are what they will be. By default nothing.
