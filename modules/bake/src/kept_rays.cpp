@@ -1,16 +1,21 @@
 #include <fmt/format.h>
 #include <isolux/bake/kept_rays.h>
 #include <isolux/core/error.h>
+#include <isolux/core/release.h>
 #include <isolux/core/stopwatch.h>
 #include <isolux/resample/fill_unlit.h>
 
 #include <algorithm>
+#include <cstddef>
+#include <cstdint>
 #include <utility>
+#include <variant>
 
 #include "bake_parts.h"
 #include "ray_budget.h"
 #include "resampling_choice.h"
 #include "standard_error.h"
+#include "texel_places.h"
 
 namespace isolux {
 namespace {
@@ -21,6 +26,15 @@ constexpr int kMostRounds = 24;
 constexpr double kSitesEnough = 2.0;
 /// Rays of a site at a texel whose ends they are iterated over.
 constexpr int kEndsEnough = 16;
+/// Sites whose places are made again at once.
+constexpr std::size_t kSamplesAPart = std::size_t(1) << 18;
+
+Sites first_of(const Sites& sites, std::size_t count) {
+  const auto last = std::ptrdiff_t(std::min(count, sites.size()));
+  return {.positions = {sites.positions.begin(), sites.positions.begin() + last},
+          .isovalues = {sites.isovalues.begin(), sites.isovalues.begin() + last},
+          .normals = {sites.normals.begin(), sites.normals.begin() + last}};
+}
 
 }  // namespace
 
@@ -117,14 +131,55 @@ BakeResult KeptRays::light(const Scene& scene, const Run& run) {
 }
 
 BakeResult KeptRays::last_light(const Scene& scene, const Run& run) && {
+  if (can_do_without_places(scene)) {
+    const auto places = TexelPlaces::of(volume_.lattice(), texels_, links_->sites().positions);
+    if (places) return light_without_places(scene, *places, run);
+  }
   BakeResult result = std::exchange(begun_, {});
   SampleSet samples = trace_and_solve(scene, run, result);
   samples.sites = std::move(*links_).take_sites();
-  links_.reset();
-  means_.reset();
-  last_ = {};
+  finish_links();
   finish_bake(volume_, std::move(samples), *resampler_, texels_, settings_, run, result);
   return result;
+}
+
+bool KeptRays::can_do_without_places(const Scene& scene) const {
+  const bool has_directions = !std::holds_alternative<UniformEnvironment>(scene.environment) || has_lamps(scene);
+  return settings_.sampler.name == "texels" && settings_.trace.bounces != 0 && !has_target(settings_) &&
+         !settings_.wants_error_grid && !has_directions && resampler_->takes_parts() && links_->can_let_places_go();
+}
+
+BakeResult KeptRays::light_without_places(const Scene& scene, const TexelPlaces& places, const Run& run) {
+  BakeResult result = std::exchange(begun_, {});
+  Sites shown = first_of(links_->sites(), kSamplesShown);
+  links_->let_places_go();
+  SampleSet samples = trace_and_solve(scene, run, result);
+  finish_links();
+  result.rmse_estimate = standard_error(samples.variance);
+  const Stopwatch watch;
+  IlluminationGrid grid = unlit_grid(texels_, samples.channels);
+  const auto channels = std::size_t(samples.channels);
+  std::size_t texel = 0;
+  std::size_t site = 0;
+  while (site < samples.variance.size()) {
+    SampleSet part{.sites = {}, .channels = samples.channels, .radiance = {}, .variance = {}};
+    part.sites.positions = places.next(texel, kSamplesAPart);
+    const auto radiance = samples.radiance.begin() + std::ptrdiff_t(site * channels);
+    part.radiance.assign(radiance, radiance + std::ptrdiff_t(part.size() * channels));
+    resampler_->add_part(volume_, part, grid, run);
+    site += part.size();
+  }
+  keep_first(kSamplesShown, samples);
+  samples.sites = std::move(shown);
+  finish_light(volume_, samples, told_by_bytes(std::move(grid)), *resampler_, settings_, run, result);
+  result.seconds["resample"] = watch.seconds();
+  return result;
+}
+
+void KeptRays::finish_links() {
+  links_.reset();
+  means_.reset();
+  release(last_);
 }
 
 SampleSet KeptRays::trace_and_solve(const Scene& scene, const Run& run, BakeResult& result) {
@@ -142,10 +197,12 @@ SampleSet KeptRays::trace_and_solve(const Scene& scene, const Run& run, BakeResu
   result.seconds["trace"] = trace_seconds_;
   result.counters = links_->counters();
   add(result.counters, solution.counters);
-  const auto rays = links_->rays();
-  const auto [least, most] = std::minmax_element(rays.begin(), rays.end());
-  result.least_rays = *least;
-  result.most_rays = *most;
+  result.least_rays = result.most_rays = std::uint32_t(settings_.trace.rays);
+  if (const auto rays = links_->rays(); !rays.empty()) {
+    const auto [least, most] = std::minmax_element(rays.begin(), rays.end());
+    result.least_rays = *least;
+    result.most_rays = *most;
+  }
   result.link_bytes = links_->bytes();
   const bool missed = settings_.target_rmse > 0.0 && standard_error(solution.samples.variance) > settings_.target_rmse;
   if (settings_.trace.bounces != 0 && missed && !(settings_.target_seconds > 0.0))

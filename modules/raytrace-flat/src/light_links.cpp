@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 #include <isolux/core/error.h>
+#include <isolux/core/release.h>
 #include <isolux/core/stopwatch.h>
 #include <isolux/raytrace_flat/light_links.h>
 
@@ -9,6 +10,7 @@
 #include <numeric>
 #include <optional>
 #include <utility>
+#include <variant>
 
 #include "bright_light.h"
 #include "bright_parts.h"
@@ -21,10 +23,11 @@ namespace isolux {
 LightLinks::LightLinks(const Volume& volume, Sites sites, const LinkSettings& settings, const Run& run)
     : LightLinks(volume, std::move(sites), settings, run, WithoutProbes{}) {
   const Lattice texels = settings.texels.value_or(cell_lattice(volume.lattice()));
-  if (settings.ends == LinkEnds::kKept)
-    rounds_->targets = std::make_shared<const LinkTargets>(volume, sites_, texels, run);
+  std::shared_ptr<LinkTargets> targets;
+  if (settings.ends == LinkEnds::kKept) targets = std::make_shared<LinkTargets>(volume, sites_, texels, run);
   if (settings.ends == LinkEnds::kAtTexels)
-    rounds_->targets = std::make_shared<const LinkTargets>(volume, texels, LinkTargets::Weights::kByIsovalue, run);
+    targets = std::make_shared<LinkTargets>(volume, texels, LinkTargets::Weights::kByIsovalue, run);
+  rounds_->targets = targets;
   trace(0, first_rays(), {}, run);
   probes_ = wide::choose_probes(sites_);
   Run other = run;
@@ -34,6 +37,7 @@ LightLinks::LightLinks(const Volume& volume, Sites sites, const LinkSettings& se
   again_->rounds_->targets = rounds_->targets;
   again_->trace(0, first_rays(), {}, other);
   add(counters_, again_->counters_);
+  if (targets != nullptr && is_closed()) targets->let_texels_go();
 }
 
 LightLinks::LightLinks(const Volume& volume, Sites sites, const LinkSettings& settings, const Run& run, WithoutProbes)
@@ -41,7 +45,6 @@ LightLinks::LightLinks(const Volume& volume, Sites sites, const LinkSettings& se
       sites_(std::move(sites)),
       settings_(settings),
       seed_(run.seed),
-      rays_(sites_.size(), std::uint32_t(std::max(0, settings.rays))),
       rounds_(std::make_unique<Rounds>()) {
   if (settings.rays < 1) throw InvalidInput(fmt::format("rays = {}: allowed is 1 and more", settings.rays));
   const int kept = settings.kept;
@@ -50,6 +53,7 @@ LightLinks::LightLinks(const Volume& volume, Sites sites, const LinkSettings& se
   if (kept == settings.rays) settings_.kept = 0;
   if (settings_.kept != 0 && settings.ends == LinkEnds::kDropped)
     throw InvalidInput("rays whose ends are dropped are all kept");
+  if (settings.nets == RayNets::kIndependent) rays_.assign(sites_.size(), std::uint32_t(settings.rays));
 }
 
 LightLinks::~LightLinks() = default;
@@ -151,8 +155,21 @@ SampleSet LightLinks::lamp_light(const SceneParts& parts, const SolveSettings& s
 }
 
 RayCounts LightLinks::kept_rays() const {
-  if (settings_.kept == 0) return {.each = rays_};
+  if (settings_.kept == 0) return all_rays();
   return {.same = std::uint32_t(settings_.kept)};
+}
+
+RayCounts LightLinks::all_rays() const { return {.each = rays_, .same = std::uint32_t(settings_.rays)}; }
+
+bool LightLinks::can_let_places_go() const {
+  return is_closed() && rounds_->targets != nullptr && rounds_->targets->are_sites() &&
+         std::none_of(sites_.normals.begin(), sites_.normals.end(),
+                      [](const Vec3f& normal) { return normal == Vec3f(0.0f); });
+}
+
+void LightLinks::let_places_go() {
+  release(sites_.positions);
+  release(sites_.normals);
 }
 
 LinkAim LightLinks::aim() const {
@@ -200,7 +217,7 @@ SampleSet LightLinks::reflected(const Scene& scene, const SampleSet& lamps, cons
                                 Solution& solution, const Run& run) const {
   RaySums sums(volume_, sites_, scene, light, aim());
   for (const LinkRound& round : rounds_->all) sums.add(round, run);
-  if (settings_.kept == 0) return sums.means({.each = rays_}, lamps);
+  if (settings_.kept == 0) return sums.means(all_rays(), lamps);
   const Stopwatch watch;
   Run own = run;
   own.seed = seed_;
@@ -209,7 +226,7 @@ SampleSet LightLinks::reflected(const Scene& scene, const SampleSet& lamps, cons
   add(solution.counters, trace_links(volume_, sites_, {}, rounds_->targets.get(), request(round.first, round.rays),
                                      round, own, [&](LinkBlock&& block) { sums.add(round, aimer, block); }));
   solution.trace_seconds += watch.seconds();
-  return sums.means({.each = rays_}, lamps);
+  return sums.means(all_rays(), lamps);
 }
 
 Solution LightLinks::solve(const Scene& scene, const SolveSettings& settings, const ToGrid& to_grid, const Run& run,
@@ -220,6 +237,9 @@ Solution LightLinks::solve(const Scene& scene, const SolveSettings& settings, co
     throw InvalidInput(fmt::format("bounces = {}: allowed is -1 (all), 0 and more", settings.bounces));
   if (settings.bounces != 0 && settings_.ends == LinkEnds::kDropped)
     throw InvalidInput(fmt::format("bounces = {}: links whose ends were dropped allow 0", settings.bounces));
+  const bool wants_places = !std::holds_alternative<UniformEnvironment>(scene.environment) || !scene.lights.empty();
+  if (wants_places && sites_.positions.empty() && !sites_.isovalues.empty())
+    throw InvalidInput("the sites' places were let go: allowed are uniform environments without light sources");
   Solution solution;
   const SceneParts parts(scene);
   const SampleSet lamps = lamp_light(parts, settings, solution.counters, run);

@@ -77,37 +77,42 @@ void LightLinks::Solver::gather_seen(SampleSet straight) {
 TargetLight LightLinks::Solver::before_last(const SolveSettings& settings, std::span<const float> start,
                                             Solution& solution) {
   e_ = straight_;
+  std::vector<float> next;
   if (settings.bounces != kAllBounces) {
     bool settled = false;
     for (solution.sweeps = 1; solution.sweeps < settings.bounces && !settled; ++solution.sweeps) {
-      std::vector<float> next = reflect(at_targets(e_));
+      reflect(at_targets(e_), next);
       settled = differ_by_rounding(next, e_);
-      e_ = std::move(next);
+      e_.swap(next);
     }
     return at_targets(e_);
   }
-  if (start.size() == links_.sites_.size() * channels_)
+  if (start.size() == links_.sites_.isovalues.size() * channels_)
     for (std::size_t i = 0; i < e_.size(); ++i)
       e_[i] = start[numbers_.empty() ? i : numbers_[i / channels_] * channels_ + i % channels_];
   ends_one_of_ = std::max<std::size_t>(settings.ends_one_of, 1);
   Anderson anderson(run_);
   while (solution.sweeps < settings.most_sweeps) {
     ++solution.sweeps;
-    solution.change = anderson.step(e_, reflect(at_targets(e_)));
+    reflect(at_targets(e_), next);
+    solution.change = anderson.step(e_, next);
     if (run_.progress) run_.progress("bounces", double(solution.sweeps) / double(settings.most_sweeps));
     if (solution.change <= settings.tolerance) break;
   }
   return at_targets(e_);
 }
 
-std::vector<float> LightLinks::Solver::reflect(const TargetLight& light) const {
+void LightLinks::Solver::reflect(const TargetLight& light, std::vector<float>& next) const {
   const std::size_t stride = light.stride();
   const std::size_t channels = light.channels;
   const std::vector<float>& levels = isovalues();
-  std::vector<float> sums(levels.size() * stride, 0.0f);
+  // Without slopes a sum is put where its reflection comes.
+  std::vector<float> with_slopes;
+  std::vector<float>& sums = light.sloped ? with_slopes : next;
+  sums.assign(levels.size() * stride, 0.0f);
   for (const LinkRound& round : links_.rounds_->all)
     add_targets(round, stride, {light.values, places_, ends_one_of_}, sums, run_);
-  std::vector<float> next(straight_.size());
+  next.resize(straight_.size());
   const RayCounts rays = links_.kept_rays();
   parallel_blocks(levels.size(), kSitesABlock, run_, "", [&](const Block& block) {
     for (std::size_t i = block.begin; i < block.end; ++i) {
@@ -120,7 +125,6 @@ std::vector<float> LightLinks::Solver::reflect(const TargetLight& light) const {
       }
     }
   });
-  return next;
 }
 
 TargetLight LightLinks::Solver::at_targets(const std::vector<float>& e) {

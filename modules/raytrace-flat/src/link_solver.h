@@ -40,8 +40,8 @@ class LightLinks::Solver {
   [[nodiscard]] const std::vector<float>& isovalues() const {
     return reads_sites() ? links_.sites_.isovalues : seen_.sites.isovalues;
   }
-  /// The light without reflections and what one reflection of `light` adds.
-  [[nodiscard]] std::vector<float> reflect(const TargetLight& light) const;
+  /// The light without reflections and what one reflection of `light` adds, into `next`, whatever it holds.
+  void reflect(const TargetLight& light, std::vector<float>& next) const;
   /// As the targets show it. \pre `e` lives as long as what is returned
   [[nodiscard]] TargetLight at_targets(const std::vector<float>& e);
   /// Values and slopes side by side.

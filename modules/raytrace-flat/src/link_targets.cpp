@@ -59,13 +59,13 @@ LinkTargets::LinkTargets(const Volume& volume, const Sites& sites, const Lattice
     : LinkTargets(volume, texels, Weights::kTrilinear, run) {
   are_sites_ = sites.size() > 0 && find_sites(sites, run);
   if (!are_sites_) {
-    site_of_texel_ = {};
+    release(site_of_texel_);
     return;
   }
   bool in_order = sites.size() == site_of_texel_.size();
   for (std::size_t t = 0; in_order && t < site_of_texel_.size(); ++t) in_order = site_of_texel_[t] == t;
   if (in_order) {
-    site_of_texel_ = {};
+    release(site_of_texel_);
     isovalues_ = sites.isovalues;
     return;
   }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <isolux/core/lattice.h>
+#include <isolux/core/release.h>
 #include <isolux/core/run.h>
 #include <isolux/core/sample_set.h>
 #include <isolux/core/volume.h>
@@ -53,9 +54,16 @@ class LinkTargets {
     Vec3f index;
     std::uint32_t ray;  ///< its number in the site's sequence
   };
-  /// Appends the targets of rays of one site, in their order.
+  /// Appends the targets of rays of one site, in their order. \pre not let go
   void append_targets(std::span<const End> ends, float isovalue, const Draws& draws,
                       std::vector<std::uint32_t>& targets) const;
+
+  /// Lets go what append_targets() reads, 8 bytes a texel, once no more links are traced.
+  void let_texels_go() {
+    release(site_of_texel_);
+    release(own_isovalues_);
+    isovalues_ = {};
+  }
 
  private:
   /// Places of some ends and the numbers of their draws, no more than a part takes; what is read there is asked for.

@@ -23,8 +23,8 @@ RaySums::RaySums(const Volume& volume, const Sites& sites, const Scene& scene, c
                  std::span<const std::uint32_t> places)
     : volume_(volume), sites_(sites), brought_(scene, e), aim_(aim), places_(places), channels_(e.channels) {
   sums_.channels = int(e.channels);
-  sums_.radiance.assign(sites.size() * channels_, 0.0f);
-  sums_.variance.assign(sites.size(), 0.0f);
+  sums_.radiance.assign(sites.isovalues.size() * channels_, 0.0f);
+  sums_.variance.assign(sites.isovalues.size(), 0.0f);
 }
 
 wide::Aimer RaySums::aimer(const LinkRound& round) const {
@@ -49,7 +49,11 @@ void RaySums::add(const LinkRound& round, const wide::Aimer& aimer, const LinkBl
   batch.clear(round.rays);
   for (std::size_t place = 0; place < block.sites.size(); ++place) {
     if (places_.empty() && place + kSitesAhead < block.sites.size()) {
-      prefetch(sites_, block.sites[place + kSitesAhead]);
+      if (brought_.wants_directions()) {
+        prefetch(sites_, block.sites[place + kSitesAhead]);
+      } else {
+        hwy::Prefetch(&sites_.isovalues[block.sites[place + kSitesAhead]]);
+      }
       prefetch(sums_, block.sites[place + kSitesAhead]);
     }
     const std::size_t site = block.sites[place];
@@ -74,9 +78,9 @@ void RaySums::add(const LinkRound& round, const wide::Aimer& aimer, const LinkBl
 SampleSet RaySums::means(const RayCounts& rays, const SampleSet& lamps) {
   SampleSet samples = std::exchange(sums_, {});
   const bool no_lamps = lamps.radiance.empty();
-  for (std::size_t site = 0; site < sites_.size(); ++site) {
+  for (std::size_t site = 0; site < samples.variance.size(); ++site) {
     const auto n = float(rays.of(site));
-    const bool is_lit = sites_.normals[site] != Vec3f(0.0f);
+    const bool is_lit = sites_.normals.empty() || sites_.normals[site] != Vec3f(0.0f);
     for (std::size_t c = 0; c < channels_; ++c) {
       float& value = samples.radiance[site * channels_ + c];
       value = is_lit ? value / n + (no_lamps ? 0.0f : lamps.radiance[site * channels_ + c]) : 0.0f;

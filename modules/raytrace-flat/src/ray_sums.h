@@ -35,7 +35,8 @@ struct RayCounts {
 /// hit, and what that reflects of the light at the targets. Everything that is given outlives this.
 class RaySums {
  public:
-  /// `e` may be empty: no reflections. Sites without a place (kLeftOut; empty: all have one) are left out.
+  /// `e` may be empty: no reflections. Sites may lack positions and normals (all have one) under a uniform environment.
+  /// Sites without a place (kLeftOut; empty: all have one) are left out.
   RaySums(const Volume& volume, const Sites& sites, const Scene& scene, const TargetLight& e, const LinkAim& aim,
           std::span<const std::uint32_t> places = {});
 

@@ -220,5 +220,25 @@ TEST(LightLinks, RefuseAnotherOuterSide) {
   EXPECT_THROW((void)links.direct(furnace(0.8f, OuterSide::kHigher), {}, isolux::Run{}), InvalidInput);
 }
 
+TEST(LightLinks, FindTheSameLightOnceTheirPlacesAreLetGo) {
+  const Volume volume = gyroid(17);
+  std::vector<std::size_t> texel;
+  const Sites sites = cell_sites(volume, OuterSide::kLower, texel);
+  const LinkSettings settings{.rays = 16, .nets = RayNets::kInterleaved};
+  LightLinks links(volume, sites, settings, isolux::Run{});
+  const Solution before = links.solve(furnace(0.8f), {}, {}, isolux::Run{});
+  ASSERT_TRUE(links.can_let_places_go());
+  links.let_places_go();
+  const Solution after = links.solve(furnace(0.8f), {}, {}, isolux::Run{});
+  EXPECT_EQ(after.samples.radiance, before.samples.radiance);
+  EXPECT_EQ(after.samples.variance, before.samples.variance);
+  EXPECT_EQ(links.sites().positions.capacity(), 0u);
+  Scene sky = furnace(0.8f);
+  sky.environment = half_sky({0.0f, 0.0f, 1.0f});
+  EXPECT_THROW((void)links.solve(sky, {}, {}, isolux::Run{}), InvalidInput);
+  // Rays can be doubled of independent nets: these want their places.
+  EXPECT_FALSE(LightLinks(volume, sites, {.rays = 4}, isolux::Run{}).can_let_places_go());
+}
+
 }  // namespace
 }  // namespace isolux::test

@@ -12,6 +12,8 @@
 
 namespace isolux {
 
+class TexelPlaces;
+
 /// A bake whose rays are kept: what bake() uses for BounceMethod::kIterated, and a way to light the same volume again
 /// after albedo, emission or environment changed, without tracing it again.
 class KeptRays {
@@ -40,6 +42,12 @@ class KeptRays {
   /// e at the links' sites, without these, and what finding it took.
   [[nodiscard]] SampleSet trace_and_solve(const Scene& scene, const Run& run, BakeResult& result);
   [[nodiscard]] Solution solve(const Scene& scene, const Run& run, BakeResult& result);
+  /// Whether the sites' places need not be held while light is found.
+  [[nodiscard]] bool can_do_without_places(const Scene& scene) const;
+  /// The light of a scene for which they are let go: `places` says where they were.
+  [[nodiscard]] BakeResult light_without_places(const Scene& scene, const TexelPlaces& places, const Run& run);
+  /// Lets go what is kept.
+  void finish_links();
   /// The light that reflections read.
   [[nodiscard]] IlluminationGrid between_reflections(const SampleSet& samples, const Run& run);
   /// The sites that should get more rays; none if it is enough.

@@ -71,7 +71,8 @@ struct Solution {
 /// the texels around its end, drawn once by its trilinear weight and, where targets have no slopes, by how near its
 /// isovalue is to the ray's: a sweep is a product with a sparse matrix. Albedo, emission and the environment change
 /// without another ray; light sources cost shadow rays. The grid's error enters as a bias. Memory: 4 bytes a ray that
-/// hits, a bit a ray and 16 bytes a site. Queries may be called from many threads.
+/// hits, a bit a ray and 16 bytes a site; while bounces are found seven floats a site and channel. Queries may be
+/// called from many threads.
 class LightLinks {
  public:
   /// What a sweep reads from if the sites do not sit at the texels, or their links' ends are kAtTexels: e of the
@@ -96,10 +97,17 @@ class LightLinks {
   /// InvalidInput where ends are kKept, as these know the sites at the texels, or nets are interleaved
   void append(const Sites& more, const Run& run);
 
+  /// Without positions and normals once these were let go.
   [[nodiscard]] const Sites& sites() const { return sites_; }
   /// The sites, where nothing else is wanted of the links any more.
   [[nodiscard]] Sites take_sites() && { return std::move(sites_); }
-  /// Rays of each site.
+  /// Whether light can be found without the sites' positions and normals: they sit at the texels, have normals, and all
+  /// their rays are kept, of interleaved nets.
+  [[nodiscard]] bool can_let_places_go() const;
+  /// Lets these go, 24 bytes a site. The scenes to come must need neither: their environment is uniform and they have
+  /// no light sources, or solve() throws InvalidInput. \pre can_let_places_go()
+  void let_places_go();
+  /// Rays of each site; empty where all have LinkSettings::rays and there can be no more.
   [[nodiscard]] std::span<const std::uint32_t> rays() const { return rays_; }
   [[nodiscard]] const TraceCounters& counters() const { return counters_; }
   [[nodiscard]] std::size_t bytes() const;
@@ -138,7 +146,10 @@ class LightLinks {
   /// e by all rays, reflecting the light given at the targets (none if empty).
   [[nodiscard]] SampleSet reflected(const Scene& scene, const SampleSet& lamps, const TargetLight& light,
                                     Solution& solution, const Run& run) const;
+  /// Whether no more rays will be traced.
+  [[nodiscard]] bool is_closed() const { return settings_.nets == RayNets::kInterleaved && settings_.kept == 0; }
   [[nodiscard]] RayCounts kept_rays() const;
+  [[nodiscard]] RayCounts all_rays() const;
   [[nodiscard]] std::size_t first_rays() const {
     return std::size_t(settings_.kept > 0 ? settings_.kept : settings_.rays);
   }
@@ -152,7 +163,7 @@ class LightLinks {
   LinkSettings settings_;
   std::uint64_t seed_;
   TraceCounters counters_;
-  std::vector<std::uint32_t> rays_;
+  std::vector<std::uint32_t> rays_;  ///< rays()
   std::unique_ptr<Rounds> rounds_;
   std::vector<std::size_t> probes_;
   std::unique_ptr<LightLinks> again_;  ///< of the probes, with other random numbers: see the variances of e
