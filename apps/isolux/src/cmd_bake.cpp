@@ -174,8 +174,8 @@ void add_bake_command(CLI::App& program, Session& session) {
   command
       .add_option(
           "--texels-a-cell", options->texels_a_cell,
-          "texels a cell on each axis, 1.5 too (default 1; with --resampler fit 1.7 for one isovalue, 1.15 for a "
-          "range): 1.58 with the fit is the best light")
+          "texels a cell on each axis, 1.5 too (default 1; with --resampler fit .73, .97 for one isovalue, .8 for a "
+          "range): 1.17 with the fit is the best light")
       ->check(number_within(0.125, 8.0))
       ->excludes(texels)
       ->type_name("N");

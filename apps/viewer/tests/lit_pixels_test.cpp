@@ -2,6 +2,7 @@
 #include "gl/surface_renderer.h"
 
 #include <gtest/gtest.h>
+#include <isolux/core/field.h>
 #include <isolux/render/image.h>
 #include <isolux/resample/light_reader.h>
 #include <isolux/volume_io/read.h>
@@ -46,18 +47,21 @@ IlluminationGrid varied_light(const Lattice& texels, int channels) {
   return light;
 }
 
-/// The light with slopes and a near field that change it by some tenths.
+/// The light with slopes of both kinds and a near field that change it by some tenths.
 IlluminationGrid detailed(IlluminationGrid light) {
   for (std::size_t i = 0; i < light.values.size(); ++i)
     light.detail.slopes.push_back(0.8f * float(std::cos(0.01 * double(i))));
+  for (std::size_t a = 0; a < 3; ++a)
+    light.detail.normal_slopes[a] = varied_light(light.lattice, light.channels).values;
+  for (float& slope : light.detail.normal_slopes[1]) slope = 0.3f - slope;
   light.detail.near_field = {{.step = 1.0f, .mean = 0.9f, .weight = {0.3f, 0.2f, 0.1f}},
                              {.step = -4.0f, .mean = -0.5f, .weight = {-0.1f, 0.2f, 0.3f}}};
   light.detail.ceiling = 0.95f;
   return light;
 }
 
-/// The light that a pixel of a mesh should show: that of LightReader, but for the near field, which is LightReader's at
-/// the vertices and linear between them.
+/// The light that a pixel of a mesh should show: that of LightReader, but for the near field and what the normal adds,
+/// which are LightReader's at the vertices and linear between them.
 class ExpectedLight {
  public:
   ExpectedLight(const Volume& volume, const IlluminationGrid& light, const IndexedMesh& mesh, float isovalue)
@@ -65,7 +69,7 @@ class ExpectedLight {
         mesh_(mesh),
         isovalue_(double(isovalue)),
         ceiling_(light.detail.near_field.empty() ? kHigh : light.detail.ceiling),
-        texels_(volume, unclamped(light, true)) {
+        texels_(volume, without_normals(volume, unclamped(light, true))) {
     if (light.detail.near_field.empty()) return;
     const LightReader whole(volume, unclamped(light, false));
     for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
@@ -88,6 +92,24 @@ class ExpectedLight {
     for (float& v : light.values) v += kLift;
     light.detail.ceiling = kHigh;
     if (texels_alone) light.detail.near_field.clear();
+    return light;
+  }
+  /// Texels' light from which what their own normals add is taken.
+  static IlluminationGrid without_normals(const Volume& volume, IlluminationGrid light) {
+    if (light.detail.normal_slopes[0].empty()) return light;
+    const TrilinearField field(volume);
+    const Index3 n = light.lattice.size;
+    std::size_t v = 0;
+    for (int k = 0; k < n.z; ++k)
+      for (int j = 0; j < n.y; ++j)
+        for (int i = 0; i < n.x; ++i) {
+          const Vec3 centre = volume.lattice().frame.index(light.lattice.frame.world({i, j, k}));
+          const Vec3 normal = field.normal(centre, OuterSide::kLower, GradientKind::kCentralDifferences);
+          for (int c = 0; c < light.channels; ++c, ++v)
+            for (std::size_t a = 0; a < 3; ++a)
+              light.values[v] -= light.detail.normal_slopes[a][v] * float(normal[int(a)]);
+        }
+    light.detail.normal_slopes = {};
     return light;
   }
   [[nodiscard]] Vec3 position(std::size_t v) const { return Vec3(mesh_.positions[v]); }
@@ -149,6 +171,7 @@ TEST_P(LitPixels, AgreeWithTheLookUpOnTheProcessor) {
   if (own) {
     light.detail.texel_light = TexelLight::kOwn;
     light.detail.slopes.clear();
+    light.detail.normal_slopes = {};
   }
   const ExpectedLight expected(volume->floats(), own ? LightReader(volume->floats(), light).offsets() : light,
                                surface.mesh, kIsovalue);

@@ -99,6 +99,10 @@ void light_on_surface(benchmark::State& state, const Scheme& scheme) {
 
 const Settings kThesis{{"k", "11"}, {"exponent", "0.5"}, {"distance", "chebyshev"}};
 const Settings kPlain{{"near_field", "false"}};
+const Settings kNoNormals{{"normals", "false"}};
+const Settings kWeakSlopes{{"normals", "false"}, {"slope_prior", "0.01"}};
+const Settings kValue{{"normals", "false"}, {"slopes", "false"}};
+const Settings kPlainFit{{"normals", "false"}, {"slopes", "false"}, {"near_field", "false"}};
 const Settings kUsual{{"k", "11"}, {"exponent", "2"}};
 
 const int kRegistered = [] {
@@ -117,30 +121,29 @@ const int kRegistered = [] {
       {"shepard_chosen_1x64", {"low_discrepancy", 1, 64, "cell_grid", {}}},
       {"shepard_chosen_8x64", {"low_discrepancy", 8, 64, "cell_grid", {}}},
       {"shepard_chosen_8x4", {"low_discrepancy", 8, 4, "cell_grid", {}}},
-      {"fit_plain_8x64", {"stratified", 8, 64, "fit", {{"slopes", "false"}, {"near_field", "false"}}}},
-      {"fit_near_field_8x64", {"stratified", 8, 64, "fit", {{"slopes", "false"}}}},
-      {"fit_slopes_8x64", {"stratified", 8, 64, "fit", {{"near_field", "false"}}}},
+      {"fit_plain_8x64", {"stratified", 8, 64, "fit", kPlainFit}},
+      {"fit_near_field_8x64", {"stratified", 8, 64, "fit", kValue}},
+      {"fit_slopes_8x64", {"stratified", 8, 64, "fit", {{"near_field", "false"}, {"normals", "false"}}}},
+      {"fit_no_normals_8x64", {"stratified", 8, 64, "fit", kNoNormals}},
       {"fit_8x64", {"stratified", 8, 64, "fit", {}}},
-      {"fit_low_discrepancy_8x64", {"low_discrepancy", 8, 64, "fit", {}}},
       {"fit_8x32", {"stratified", 8, 32, "fit", {}}},
-      {"fit_8x16", {"stratified", 8, 16, "fit", {}}},
       {"fit_8x8", {"stratified", 8, 8, "fit", {}}},
-      {"fit_4x16", {"stratified", 4, 16, "fit", {}}},
-      {"fit_4x4", {"stratified", 4, 4, "fit", {}}},
       {"fit_8x2", {"stratified", 8, 2, "fit", {}}},
+      {"fit_4x4", {"stratified", 4, 4, "fit", {}}},
+      // Texels of 1.37 cells: 20.6 sites a texel are 8 a cell.
+      {"fit_8x64_0.73_an_axis", {"stratified", 20.6, 64, "fit", {}, 0.73}},
+      {"fit_16x64_0.73_an_axis", {"stratified", 41.1, 64, "fit", {}, 0.73}},
+      {"fit_8x16_0.73_an_axis", {"stratified", 20.6, 16, "fit", {}, 0.73}},
+      {"fit_8x8_0.73_an_axis", {"stratified", 20.6, 8, "fit", {}, 0.73}},
+      {"fit_4x16_0.73_an_axis", {"stratified", 10.3, 16, "fit", {}, 0.73}},
       {"texels_64_2_an_axis", {"texels", 1, 64, "direct", {}, 2}},
       {"thesis_kdtree_64", {"random", 1, 64, "cgal_kdtree", kThesis}},
-      {"fit_value_1x64_2_an_axis", {"stratified", 1, 64, "fit", {{"slopes", "false"}}, 2}},
-      {"fit_value_2x64_2_an_axis", {"stratified", 2, 64, "fit", {{"slopes", "false"}}, 2}},
-      {"fit_value_8x8", {"stratified", 8, 8, "fit", {{"slopes", "false"}}}},
-      {"fit_value_8x16", {"stratified", 8, 16, "fit", {{"slopes", "false"}}}},
-      {"fit_5x64_1.5_an_axis", {"stratified", 4.74, 64, "fit", {}, 1.5}},
-      {"fit_8x64_1.5_an_axis", {"stratified", 8, 64, "fit", {}, 1.5}},
-      {"fit_value_4x64_2_an_axis", {"stratified", 4, 64, "fit", {{"slopes", "false"}}, 2}},
-      {"fit_8x64_1.58_an_axis", {"stratified", 8, 64, "fit", {{"slope_prior", "0.01"}}, 1.58}},
-      {"fit_4x64_1.58_an_axis", {"stratified", 4, 64, "fit", {{"slope_prior", "0.01"}}, 1.58}},
-      {"fit_16x64", {"stratified", 16, 64, "fit", {}}},
-      {"fit_4x32_2_an_axis", {"stratified", 4, 32, "fit", {}, 2}},
+      {"fit_value_2x64_2_an_axis", {"stratified", 2, 64, "fit", kValue, 2}},
+      // Sixteen and 32 sites a cell.
+      {"fit_16x64_1.17_an_axis", {"stratified", 10, 64, "fit", {{"slope_prior", "0.01"}}, 1.17}},
+      {"fit_32x64_1.17_an_axis", {"stratified", 20, 64, "fit", {{"slope_prior", "0.01"}}, 1.17}},
+      {"fit_no_normals_16x64_1.58_an_axis", {"stratified", 4, 64, "fit", kWeakSlopes, 1.58}},
+      {"fit_no_normals_32x64_1.58_an_axis", {"stratified", 8, 64, "fit", kWeakSlopes, 1.58}},
   };
   for (const auto& [name, scheme] : schemes) {
     benchmark::RegisterBenchmark(("light_on_surface/" + name).c_str(), light_on_surface, scheme)

@@ -7,15 +7,21 @@ namespace isolux {
 namespace {
 
 // docs/resampling.md has the curves behind these.
-constexpr double kFitSites = 8.0;   // a texel
+constexpr double kFitSites = 8.0;   // a cell or texel
 constexpr double kFineSites = 2.0;  // a texel without slopes
-// All isovalues: the most texels that eight numbers a voxel have room for with slopes. Finer ones tell level sets apart
-// themselves.
-constexpr double kSlopedTexels = 1.6;
-// Known isovalues: the most texels that bricks of one number a voxel of the whole volume have room for, of a single one
-// without slopes and of a tenth of all with them.
-constexpr double kOneIsovalueTexels = 1.7;
-constexpr double kRangeTexels = 1.15;
+
+/// Texels a cell and axis of one kind of light.
+struct FitDensity {
+  double usual = 1.0;    ///< where the user does not say
+  double normals = 1.0;  ///< the most with slopes along the normal: finer ones tell surfaces' sides apart themselves
+  double slopes = 1.0;   ///< the most with slopes over the isovalue, likewise
+};
+// All isovalues: two numbers a voxel, five a texel; the most are eight numbers a voxel.
+constexpr FitDensity kSweep{.usual = 0.73, .normals = 1.18, .slopes = 1.6};
+// Known isovalues: bricks of one number a voxel of the whole volume, of a single one (which says nothing of slopes over
+// the isovalue) and of a tenth of all.
+constexpr FitDensity kOneIsovalue{.usual = 0.97, .normals = 1.1, .slopes = 0.0};
+constexpr FitDensity kRange{.usual = 0.8, .normals = 0.9, .slopes = 1.15};
 constexpr double kKnownSites = 16.0;             // a crossed cell
 constexpr const char* kWeakSlopePrior = "0.01";  // where sites a cell are many
 /// A cell that a level set only just cuts may get no site; its texels are next to lit ones.
@@ -40,15 +46,16 @@ void choose_resampling(BakeSettings& settings) {
     settings.resampler.name = settings.sampler.name == "texels" ? "direct" : "cell_grid";
   const bool one = one_isovalue(settings);
   const bool range = settings.isovalues && !one;
+  const FitDensity& density = one ? kOneIsovalue : range ? kRange : kSweep;
   if (settings.texels_a_cell == 0.0) {
-    settings.texels_a_cell = 1.0;
-    if (fit && !settings.texels) settings.texels_a_cell = one ? kOneIsovalueTexels : range ? kRangeTexels : 1.0;
+    const bool usual = fit && !settings.texels && settings.lattice == TexelLattice::kCells;
+    settings.texels_a_cell = usual ? density.usual : 1.0;
   }
   if (!fit) return;
-  // All sites of one isovalue say nothing of how light changes with it.
-  const bool fine = settings.texels_a_cell > (range ? kRangeTexels : kSlopedTexels);
+  const bool fine = settings.texels_a_cell > density.slopes;
   Settings& options = settings.resampler.settings;
-  if (fine || one) options.try_emplace("slopes", "false");
+  if (settings.texels_a_cell > density.normals) options.try_emplace("normals", "false");
+  if (fine) options.try_emplace("slopes", "false");
   if (range || settings.texels_a_cell > 1.0) options.try_emplace("slope_prior", kWeakSlopePrior);
   if (settings.sites_a_cell != 0.0) return;
   settings.sites_a_cell = settings.isovalues

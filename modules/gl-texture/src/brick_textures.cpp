@@ -65,10 +65,13 @@ BrickTextures upload_bricks(const LightBricks& bricks, TexelFormat format) {
   const Index3 size = atlas * LightBricks::kTexels;
   BrickTextures result;
   result.pages = upload_packed(bricks.pages, entries);
-  result.values = upload_texels(size, bricks.channels, arranged(bricks, bricks.values, atlas), format, {});
-  if (!bricks.slopes.empty()) {
-    result.slopes = upload_texels(size, bricks.channels, arranged(bricks, bricks.slopes, atlas), format, {});
-  }
+  const auto upload = [&](const std::vector<float>& values) {
+    return upload_texels(size, bricks.channels, arranged(bricks, values, atlas), format, {});
+  };
+  result.values = upload(bricks.values);
+  if (!bricks.slopes.empty()) result.slopes = upload(bricks.slopes);
+  for (unsigned a = 0; a < 3; ++a)
+    if (!bricks.normal_slopes[a].empty()) result.normal_slopes[a] = upload(bricks.normal_slopes[a]);
   return result;
 }
 

@@ -4,6 +4,7 @@
 #include <isolux/gl_texture.h>
 
 #include <algorithm>
+#include <array>
 #include <vector>
 
 #include "egl_context.h"
@@ -33,6 +34,7 @@ LightBricks some_bricks(int channels) {
   for (std::size_t i = 0; i < count * bricks.brick_size(); ++i) {
     bricks.values.push_back(random.uniform_float());
     bricks.slopes.push_back(random.uniform_float());
+    for (auto& slopes : bricks.normal_slopes) slopes.push_back(random.uniform_float());
   }
   return bricks;
 }
@@ -60,6 +62,8 @@ TEST(BrickTextures, HaveEveryTexelOfABrickWhereItsPageSays) {
     glGetTexImage(GL_TEXTURE_3D, 0, GL_RGBA, GL_UNSIGNED_INT_2_10_10_10_REV, pages.data());
     const std::vector<float> values = texels_of(textures.values);
     const std::vector<float> slopes = texels_of(*textures.slopes);
+    std::array<std::vector<float>, 3> normal_slopes;
+    for (std::size_t a = 0; a < 3; ++a) normal_slopes[a] = texels_of(*textures.normal_slopes[a]);
     const Index3 n = textures.values.size();
     for (std::size_t p = 0; p < pages.size(); ++p) {
       if (bricks.slots[p] == LightBricks::kAbsent) {
@@ -77,9 +81,10 @@ TEST(BrickTextures, HaveEveryTexelOfABrickWhereItsPageSays) {
               const auto at = std::size_t(((t.z * n.y + t.y) * n.x + t.x) * channels + c);
               ASSERT_EQ(values[at], bricks.values[from]);
               ASSERT_EQ(slopes[at], bricks.slopes[from]);
+              for (std::size_t a = 0; a < 3; ++a) ASSERT_EQ(normal_slopes[a][at], bricks.normal_slopes[a][from]);
             }
     }
-    EXPECT_EQ(textures.bytes(), 4 * (pages.size() + values.size() + slopes.size()));
+    EXPECT_EQ(textures.bytes(), 4 * (pages.size() + values.size() + slopes.size() + 3 * normal_slopes[0].size()));
   }
 }
 
@@ -92,6 +97,7 @@ TEST(BrickTextures, MayBeNone) {
   const BrickTextures textures = upload_bricks(bricks, TexelFormat::kFloat16);
   EXPECT_NE(textures.values.name(), 0u);
   EXPECT_FALSE(textures.slopes.has_value());
+  EXPECT_FALSE(textures.normal_slopes[0].has_value());
   EXPECT_EQ(glGetError(), GLenum(GL_NO_ERROR));
 }
 

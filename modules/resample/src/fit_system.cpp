@@ -24,11 +24,11 @@ constexpr float kClampedPart = 0.1f;
 
 }  // namespace
 
-FitSystem::FitSystem(const Volume& volume, const SampleSet& samples, const Lattice& texels, SlopeTerms slopes,
+FitSystem::FitSystem(const Volume& volume, const SampleSet& samples, const Lattice& texels, const FitTerms& terms,
                      NearFieldUse near_field, const Run& run)
-    : slope_terms_(slopes), near_field_(near_field), run_(run) {
+    : terms_(terms), near_field_(near_field), run_(run) {
   sort_rows(volume, samples, texels, run);
-  texels_.emplace(volume, texels, starts_, slopes, run);
+  texels_.emplace(volume, texels, starts_, terms, run);
   measure(volume, samples, run);
   weigh_texels();
 }
@@ -40,11 +40,8 @@ void FitSystem::sort_rows(const Volume& volume, const SampleSet& samples, const 
   parallel_blocks(rows_.size(), 65536, run, "", [&](const Block& block) {
     for (std::size_t r = block.begin; r < block.end; ++r) {
       const CellPlace& place = sorted.places[r];
-      rows_[r] = {.place = place.in_cell,
-                  .isovalue = samples.sites.isovalues[place.site],
-                  .openness = {},
-                  .weight = 1.0f,
-                  .sample = place.site};
+      rows_[r] = {
+          .at = {.place = place.in_cell, .feature = {1.0f}}, .openness = {}, .weight = 1.0f, .sample = place.site};
     }
   });
 }
@@ -62,11 +59,14 @@ void FitSystem::measure(const Volume& volume, const SampleSet& samples, const Ru
       Row& row = rows_[r];
       const Vec3 position(samples.sites.positions[row.sample]);
       const NearField::Ahead ahead = near_field.ahead(position);
+      for (std::size_t a = 0; terms_.normals && a < 3; ++a)
+        row.at.feature[terms_.first_normal() + a] = float(ahead.downhill[int(a)]);
       row.weight = float(std::sqrt(ahead.fall));
       sums[kTerms] += double(row.weight);
       if (near_field_ == NearFieldUse::kNone) continue;
+      const auto isovalue = double(samples.sites.isovalues[row.sample]);
       for (std::size_t t = 0; t < kTerms; ++t) {
-        row.openness[t] = near_field.openness(position, ahead, double(row.isovalue), steps_[t]);
+        row.openness[t] = near_field.openness(position, ahead, isovalue, steps_[t]);
         sums[t] += double(row.openness[t]);
       }
     }
@@ -76,6 +76,11 @@ void FitSystem::measure(const Volume& volume, const SampleSet& samples, const Ru
     for (std::size_t t = 0; t <= kTerms; ++t) sums[t] += block[t];
   }
   centre_rows(sums);
+  if (!terms_.slopes) return;
+  for_each_cell([&](const FitCorners& corners, std::span<const Row> rows, std::size_t first, std::size_t /*layer*/) {
+    for (std::size_t r = first; r < first + rows.size(); ++r)
+      rows_[r].at.feature[1] = samples.sites.isovalues[rows_[r].sample] - corners.reference;
+  });
 }
 
 void FitSystem::centre_rows(const std::array<double, kTerms + 1>& sums) {
@@ -123,10 +128,15 @@ void FitSystem::for_each_cell(const Visit& visit) const {
 }
 
 FitVector FitSystem::zero() const {
-  FitVector x;
-  x.values.assign(texels_->size(), 0.0f);
-  if (slope_terms_ == SlopeTerms::kByIsovalue) x.slopes.assign(texels_->size(), 0.0f);
-  return x;
+  return {.numbers = std::vector<float>(texels_->size() * terms_.count(), 0.0f), .terms = {}};
+}
+
+FitVector FitSystem::damped(const FitDamping& damping, const FitVector* x) const {
+  FitVector y = zero();
+  for (std::size_t i = 0, t = 0; t < texel_weights_.size(); ++t)
+    for (std::size_t k = 0; k < terms_.count(); ++k, ++i)
+      y.numbers[i] = float(damping[k]) * texel_weights_[t] * (x == nullptr ? 1.0f : x->numbers[i]);
+  return y;
 }
 
 template <class Value>
@@ -136,10 +146,8 @@ std::vector<float> FitSystem::texel_means(const Value& value, std::vector<float>
   std::vector<double> total(texels_->size(), 0.0);
   for_each_cell(
       [&](const FitCorners& corners, std::span<const Row> rows, std::size_t /*first*/, std::size_t /*layer*/) {
-        std::array<float, 8> w{};
-        std::array<float, 8> s{};
         for (const Row& row : rows) {
-          corners.weights(row.place, row.isovalue, w, s);
+          const PerCorner<float> w = corner_weights(row.at.place);
           for (unsigned q = 0; q < 8; ++q) {
             sum[corners.texel[q]] += double(w[q]) * double(value(row));
             total[corners.texel[q]] += double(w[q]);
@@ -156,43 +164,35 @@ std::vector<float> FitSystem::texel_means(const Value& value, std::vector<float>
 
 FitVector FitSystem::prior(std::span<const float> light, std::vector<float>& coverage) const {
   FitVector x = zero();
-  x.values = texel_means([light](const Row& row) { return light[row.sample]; }, coverage);
+  const std::vector<float> means = texel_means([light](const Row& row) { return light[row.sample]; }, coverage);
+  for (std::size_t t = 0; t < means.size(); ++t) x.numbers[t * terms_.count()] = means[t];
   return x;
 }
 
 FitRest FitSystem::rest(std::span<const float> light, const FitVector& prior, const FitVector& x,
                         const FitDamping& damping, const ValueRange& bounds) const {
-  FitRest rest{.gradient = zero(), .weights = std::vector<float>(rows_.size(), 0.0f)};
+  FitRest rest{.gradient = damped(damping, &x), .weights = std::vector<float>(rows_.size(), 0.0f)};
   FitVector& y = rest.gradient;
-  for (std::size_t t = 0; t < x.values.size(); ++t)
-    y.values[t] = -float(damping.value) * texel_weights_[t] * x.values[t];
-  for (std::size_t t = 0; t < x.slopes.size(); ++t)
-    y.slopes[t] = -float(damping.slope) * texel_weights_[t] * x.slopes[t];
+  for (float& number : y.numbers) number = -number;
+  FitVector sum = prior;
+  for (std::size_t i = 0; i < x.numbers.size(); ++i) sum.numbers[i] += x.numbers[i];
   std::vector<Terms> layers(std::size_t(texels_->cells().z), Terms{});
-  const bool sloped = slope_terms_ == SlopeTerms::kByIsovalue;
   for_each_cell([&](const FitCorners& corners, std::span<const Row> rows, std::size_t first, std::size_t layer) {
-    std::array<float, 8> w{};
-    std::array<float, 8> s{};
+    const auto texels = corners.gather<double>(terms_, sum.numbers.data());
+    CellLight<double> left(terms_.count());
     for (std::size_t r = 0; r < rows.size(); ++r) {
       const Row& row = rows[r];
-      corners.weights(row.place, row.isovalue, w, s);
-      double read = 0.0;
-      for (unsigned q = 0; q < 8; ++q) {
-        const std::uint32_t t = corners.texel[q];
-        read += double(w[q]) * (double(prior.values[t]) + double(x.values[t]));
-        if (sloped) read += double(s[q]) * double(x.slopes[t]);
-      }
+      const PerCorner<float> w = corner_weights(row.at.place);
+      double read = texels.read(row.at, w);
       for (std::size_t t = 0; t < kTerms; ++t) read += double(row.openness[t]) * x.terms[t];
       const bool follows = read > double(bounds.low) && read < double(bounds.high);
       rest.weights[first + r] = follows ? row.weight : kClampedPart * row.weight;
-      const auto left =
-          row.weight * float(double(light[row.sample]) - std::clamp(read, double(bounds.low), double(bounds.high)));
-      for (unsigned q = 0; q < 8; ++q) {
-        y.values[corners.texel[q]] += w[q] * left;
-        if (sloped) y.slopes[corners.texel[q]] += s[q] * left;
-      }
-      for (std::size_t t = 0; t < kTerms; ++t) layers[layer][t] += double(row.openness[t]) * double(left);
+      const double error =
+          double(row.weight) * (double(light[row.sample]) - std::clamp(read, double(bounds.low), double(bounds.high)));
+      left.add(row.at, w, error);
+      for (std::size_t t = 0; t < kTerms; ++t) layers[layer][t] += double(row.openness[t]) * error;
     }
+    corners.scatter(terms_, left, y.numbers.data());
   });
   y.terms = sum_layers(layers);
   return rest;
@@ -200,71 +200,45 @@ FitRest FitSystem::rest(std::span<const float> light, const FitVector& prior, co
 
 FitVector FitSystem::normal_product(const FitVector& x, const FitDamping& damping,
                                     std::span<const float> weights) const {
-  FitVector y = zero();
-  for (std::size_t t = 0; t < x.values.size(); ++t)
-    y.values[t] = float(damping.value) * texel_weights_[t] * x.values[t];
-  for (std::size_t t = 0; t < x.slopes.size(); ++t)
-    y.slopes[t] = float(damping.slope) * texel_weights_[t] * x.slopes[t];
+  FitVector y = damped(damping, &x);
   std::vector<Terms> layers(std::size_t(texels_->cells().z), Terms{});
-  const bool sloped = slope_terms_ == SlopeTerms::kByIsovalue;
-  const std::array<float, kTerms> terms = [&] {
-    std::array<float, kTerms> result{};
-    for (std::size_t t = 0; t < kTerms; ++t) result[t] = float(x.terms[t]);
-    return result;
-  }();
+  std::array<float, kTerms> terms{};
+  for (std::size_t t = 0; t < kTerms; ++t) terms[t] = float(x.terms[t]);
   for_each_cell([&](const FitCorners& corners, std::span<const Row> rows, std::size_t first, std::size_t layer) {
-    std::array<float, 8> w{};
-    std::array<float, 8> s{};
-    std::array<float, 8> values{};
-    std::array<float, 8> slopes{};
-    std::array<float, 8> value_sums{};
-    std::array<float, 8> slope_sums{};
+    const auto texels = corners.gather<float>(terms_, x.numbers.data());
+    CellLight<float> image(terms_.count());
     Terms term_sums{};
-    for (unsigned q = 0; q < 8; ++q) {
-      values[q] = x.values[corners.texel[q]];
-      slopes[q] = sloped ? x.slopes[corners.texel[q]] : 0.0f;
-    }
     for (std::size_t r = 0; r < rows.size(); ++r) {
       const Row& row = rows[r];
-      const float weight = weights[first + r];
-      corners.weights(row.place, row.isovalue, w, s);
-      // Four sums side by side, which fit a vector.
-      std::array<float, 4> parts{};
-      for (unsigned q = 0; q < 4; ++q)
-        parts[q] = (w[q] * values[q] + s[q] * slopes[q]) + (w[q + 4] * values[q + 4] + s[q + 4] * slopes[q + 4]) +
-                   row.openness[q] * terms[q];
-      const float read = weight * ((parts[0] + parts[1]) + (parts[2] + parts[3]));
-      for (unsigned q = 0; q < 8; ++q) {
-        value_sums[q] += w[q] * read;
-        slope_sums[q] += s[q] * read;
-      }
+      const PerCorner<float> w = corner_weights(row.at.place);
+      std::array<float, kTerms> parts{};
+      for (std::size_t t = 0; t < kTerms; ++t) parts[t] = row.openness[t] * terms[t];
+      const float read =
+          weights[first + r] * (texels.read(row.at, w) + ((parts[0] + parts[1]) + (parts[2] + parts[3])));
+      image.add(row.at, w, read);
       for (std::size_t t = 0; t < kTerms; ++t) term_sums[t] += double(row.openness[t]) * double(read);
     }
     for (std::size_t t = 0; t < kTerms; ++t) layers[layer][t] += term_sums[t];
-    for (unsigned q = 0; q < 8; ++q) {
-      y.values[corners.texel[q]] += value_sums[q];
-      if (sloped) y.slopes[corners.texel[q]] += slope_sums[q];
-    }
+    corners.scatter(terms_, image, y.numbers.data());
   });
   y.terms = sum_layers(layers);
   return y;
 }
 
 FitVector FitSystem::diagonal(const FitDamping& damping, std::span<const float> weights) const {
-  FitVector d = zero();
-  for (std::size_t t = 0; t < d.values.size(); ++t) d.values[t] = float(damping.value) * texel_weights_[t];
-  for (std::size_t t = 0; t < d.slopes.size(); ++t) d.slopes[t] = float(damping.slope) * texel_weights_[t];
+  FitVector d = damped(damping, nullptr);
   std::vector<Terms> layers(std::size_t(texels_->cells().z), Terms{});
   for_each_cell([&](const FitCorners& corners, std::span<const Row> rows, std::size_t first, std::size_t layer) {
-    std::array<float, 8> w{};
-    std::array<float, 8> s{};
     for (std::size_t r = 0; r < rows.size(); ++r) {
       const Row& row = rows[r];
       const float weight = weights[first + r];
-      corners.weights(row.place, row.isovalue, w, s);
+      const PerCorner<float> w = corner_weights(row.at.place);
       for (unsigned q = 0; q < 8; ++q) {
-        d.values[corners.texel[q]] += weight * w[q] * w[q];
-        if (!d.slopes.empty()) d.slopes[corners.texel[q]] += weight * s[q] * s[q];
+        float* to = &d.numbers[std::size_t(corners.texel[q]) * terms_.count()];
+        for (std::size_t k = 0; k < terms_.count(); ++k) {
+          const float factor = w[q] * corners.factor(terms_, row.at, k, q);
+          to[k] += weight * factor * factor;
+        }
       }
       for (std::size_t t = 0; t < kTerms; ++t) {
         layers[layer][t] += double(weight) * double(row.openness[t]) * double(row.openness[t]);

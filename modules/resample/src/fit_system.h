@@ -17,19 +17,15 @@ namespace isolux {
 /// Steps of the near-field terms, in mean grid spacings: one and two are as much as reads fast (docs/resampling.md).
 inline constexpr std::array<double, 4> kNearFieldSteps = {0.5, 1.0, 2.0, 4.0};
 
-/// What a fit solves for, or any vector of that shape: a value and a slope for each texel used and a few weights for
-/// all.
+/// What a fit solves for, or any vector of that shape: FitTerms::count() numbers for each texel used and a few weights
+/// for all.
 struct FitVector {
-  std::vector<float> values;
-  std::vector<float> slopes;                           ///< per unit of the texels' breadths; empty without slopes
+  std::vector<float> numbers;                          ///< slopes per unit of the texels' breadths
   std::array<double, kNearFieldSteps.size()> terms{};  ///< zero without near field
 };
 
-/// How much a fit holds to its prior, by the same parts, in samples.
-struct FitDamping {
-  double value = 0.0;
-  double slope = 0.0;
-};
+/// How much a fit holds each of a texel's numbers to its prior, in samples; in the order of FitTerms.
+using FitDamping = std::array<double, FitTerms::kMost>;
 
 /// What a fit leaves, seen from where it stands.
 struct FitRest {
@@ -46,11 +42,11 @@ enum class NearFieldUse { kNone, kFitted };
 /// layer after another, even layers before odd ones, which write apart.
 class FitSystem {
  public:
-  FitSystem(const Volume& volume, const SampleSet& samples, const Lattice& texels, SlopeTerms slopes,
+  FitSystem(const Volume& volume, const SampleSet& samples, const Lattice& texels, const FitTerms& terms,
             NearFieldUse near_field, const Run& run);
 
   [[nodiscard]] FitVector zero() const;
-  /// Mean light of the samples around each texel, weighted as the reading does; the result's slopes are 0. Where
+  /// Mean light of the samples around each texel, weighted as the reading does, as the values of a vector. Where
   /// `coverage` is 0, no sample is.
   [[nodiscard]] FitVector prior(std::span<const float> light, std::vector<float>& coverage) const;
   /// What prior + x leaves of the samples, read as light within `bounds`.
@@ -63,24 +59,26 @@ class FitSystem {
   [[nodiscard]] FitVector diagonal(const FitDamping& damping, std::span<const float> weights) const;
 
   [[nodiscard]] const FitTexels& texels() const { return *texels_; }
+  [[nodiscard]] const FitTerms& terms() const { return terms_; }
   /// Mean openness over the samples.
   [[nodiscard]] const std::array<double, kNearFieldSteps.size()>& mean_openness() const { return mean_openness_; }
   [[nodiscard]] std::span<const double> steps() const { return steps_; }
 
  private:
   struct Row {
-    std::array<float, 3> place;  ///< in the cell of texels, 0 to 1
-    float isovalue;
+    FitPoint at;
     std::array<float, kNearFieldSteps.size()> openness;  ///< less the mean
     float weight;
     std::uint32_t sample;
   };
 
   void sort_rows(const Volume& volume, const SampleSet& samples, const Lattice& texels, const Run& run);
-  /// Weights of the rows, their openness where it is fitted, and the texels' own weights.
+  /// Weights of the rows, their features, and their openness where it is fitted.
   void measure(const Volume& volume, const SampleSet& samples, const Run& run);
   void centre_rows(const std::array<double, kNearFieldSteps.size() + 1>& sums);
   void weigh_texels();
+  /// damping * the texels' weights * x, or those alone.
+  [[nodiscard]] FitVector damped(const FitDamping& damping, const FitVector* x) const;
   /// Calls visit(corners, rows, first row's number, layer) for every cell with rows.
   template <class Visit>
   void for_each_cell(const Visit& visit) const;
@@ -91,7 +89,7 @@ class FitSystem {
   [[nodiscard]] std::array<double, kNearFieldSteps.size()> sum_layers(
       const std::vector<std::array<double, kNearFieldSteps.size()>>& layers) const;
 
-  SlopeTerms slope_terms_;
+  FitTerms terms_;
   NearFieldUse near_field_;
   const Run& run_;
   std::vector<std::uint32_t> starts_;  ///< of each cell's rows, and the end

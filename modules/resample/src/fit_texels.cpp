@@ -1,11 +1,12 @@
 #include "fit_texels.h"
 
-#include <isolux/core/field.h>
 #include <isolux/core/parallel.h>
 
 #include <algorithm>
 #include <cmath>
 #include <glm/common.hpp>
+
+#include "near_field.h"
 
 namespace isolux {
 namespace {
@@ -19,8 +20,8 @@ std::size_t corner_offset(const Lattice& texels, int i, int j, int k, unsigned q
 }  // namespace
 
 FitTexels::FitTexels(const Volume& volume, const Lattice& texels, std::span<const std::uint32_t> starts,
-                     SlopeTerms slopes, const Run& run)
-    : texels_(texels), slope_terms_(slopes) {
+                     const FitTerms& terms, const Run& run)
+    : texels_(texels), terms_(terms) {
   number(starts);
   measure(volume, run);
 }
@@ -48,7 +49,7 @@ void FitTexels::number(std::span<const std::uint32_t> starts) {
 }
 
 void FitTexels::measure(const Volume& volume, const Run& run) {
-  const TrilinearField field(volume);
+  const NearField near_field(volume);
   const IndexToWorld to_volume = index_to_index(texels_, volume.lattice());
   const ValueRange range = value_range(volume);
   const float least = std::max(1e-4f * (range.high - range.low), 1e-30f);
@@ -58,14 +59,16 @@ void FitTexels::measure(const Volume& volume, const Run& run) {
   const auto ny = std::size_t(texels_.size.y);
   isovalues_.resize(size());
   inverse_breadths_.assign(size(), 0.0f);
+  if (terms_.normals) normals_.resize(size());
   parallel_blocks(size(), 4096, run, "", [&](const Block& block) {
     for (std::size_t n = block.begin; n < block.end; ++n) {
       const std::size_t t = offsets_[n];
       const std::size_t j = t / nx % ny;
       const std::size_t k = t / (nx * ny);
       const Vec3 centre = to_volume.world({double(t % nx), double(j), double(k)});
-      isovalues_[n] = float(field.value(centre));
-      if (slope_terms_ == SlopeTerms::kNone) continue;
+      isovalues_[n] = float(near_field.field().value(centre));
+      if (terms_.normals) normals_[n] = Vec3f(near_field.ahead(centre).downhill);
+      if (!terms_.slopes) continue;
       // The voxels of the cells that the texel's linear tent touches.
       const Index3 low = glm::max(Index3(glm::floor(centre - reach + 1e-6)), Index3(0));
       const Index3 high = glm::min(Index3(glm::ceil(centre + reach - 1e-6)), points - 1);
@@ -87,8 +90,10 @@ FitCorners FitTexels::corners(int i, int j, int k) const {
   for (unsigned q = 0; q < 8; ++q) {
     const std::uint32_t n = number_[corner_offset(texels_, i, j, k, q)];
     corners.texel[q] = n;
-    corners.isovalue[q] = isovalues_[n];
+    if (q == 0) corners.reference = isovalues_[n];
+    corners.isovalue[q] = isovalues_[n] - corners.reference;
     corners.inverse_breadth[q] = inverse_breadths_[n];
+    for (int a = 0; terms_.normals && a < 3; ++a) corners.normal[unsigned(a)][q] = normals_[n][a];
   }
   return corners;
 }

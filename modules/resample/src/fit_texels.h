@@ -3,41 +3,21 @@
 #include <isolux/core/run.h>
 #include <isolux/core/volume.h>
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
 
+#include "fit_cell.h"
+
 namespace isolux {
-
-enum class SlopeTerms { kNone, kByIsovalue };
-
-/// The eight texels around a cell of texels, by their numbers among those used.
-struct FitCorners {
-  std::array<std::uint32_t, 8> texel;
-  std::array<float, 8> isovalue;
-  std::array<float, 8> inverse_breadth;
-
-  /// The reading's weights of the texels' values, and of their slopes, at a place in the cell (0 to 1).
-  void weights(const std::array<float, 3>& place, float at_isovalue, std::array<float, 8>& value,
-               std::array<float, 8>& slope) const {
-    const std::array<float, 4> xy = {(1.0f - place[0]) * (1.0f - place[1]), place[0] * (1.0f - place[1]),
-                                     (1.0f - place[0]) * place[1], place[0] * place[1]};
-    for (unsigned q = 0; q < 4; ++q) {
-      value[q] = xy[q] * (1.0f - place[2]);
-      value[q + 4] = xy[q] * place[2];
-    }
-    for (unsigned q = 0; q < 8; ++q) slope[q] = value[q] * (at_isovalue - isovalue[q]) * inverse_breadth[q];
-  }
-};
 
 /// The texels that a fit has anything to say of: the corners of the cells that hold samples. They are numbered in the
 /// order of memory, so that a known range of isovalues costs what its own texels cost.
 class FitTexels {
  public:
   /// `starts` are the numbers of each cell's first sample, and the end; x fastest.
-  FitTexels(const Volume& volume, const Lattice& texels, std::span<const std::uint32_t> starts, SlopeTerms slopes,
+  FitTexels(const Volume& volume, const Lattice& texels, std::span<const std::uint32_t> starts, const FitTerms& terms,
             const Run& run);
 
   [[nodiscard]] std::size_t size() const { return offsets_.size(); }
@@ -58,11 +38,12 @@ class FitTexels {
   void measure(const Volume& volume, const Run& run);
 
   Lattice texels_;
-  SlopeTerms slope_terms_;
+  FitTerms terms_;
   std::vector<std::uint32_t> number_;  ///< of every texel of the grid
   std::vector<std::size_t> offsets_;
   std::vector<float> isovalues_;  ///< f at the texel centres
   std::vector<float> inverse_breadths_;
+  std::vector<Vec3f> normals_;  ///< of the level sets through the texel centres, towards lower values; or none
 };
 
 }  // namespace isolux

@@ -43,9 +43,10 @@ void mark_range(LightBricks& bricks, const Volume& volume, const Lattice& texels
   }
 }
 
-/// Appends the texels of one page.
+/// Appends the texels of one page, if there are any.
 void append_brick(const Lattice& texels, int channels, const Index3& page, const std::vector<float>& from,
                   std::vector<float>& to) {
+  if (from.empty()) return;
   const Index3 last = texels.size - 1;
   for (int k = 0; k < LightBricks::kTexels; ++k) {
     for (int j = 0; j < LightBricks::kTexels; ++j) {
@@ -78,8 +79,9 @@ LightBricks make_light_bricks(const Volume& volume, const IlluminationGrid& ligh
         if (slot == LightBricks::kAbsent) continue;
         slot = next++;
         append_brick(texels, light.channels, {i, j, k}, light.values, bricks.values);
-        if (!light.detail.slopes.empty())
-          append_brick(texels, light.channels, {i, j, k}, light.detail.slopes, bricks.slopes);
+        append_brick(texels, light.channels, {i, j, k}, light.detail.slopes, bricks.slopes);
+        for (unsigned a = 0; a < 3; ++a)
+          append_brick(texels, light.channels, {i, j, k}, light.detail.normal_slopes[a], bricks.normal_slopes[a]);
       }
     }
   }

@@ -42,85 +42,123 @@ struct BrickPlace {
     }
   }
 
-  [[nodiscard]] Vec3f read(const std::vector<float>& bricks, int channels) const {
+  /// Rounded to float as IlluminationGrid::at_index() does. GCC 12 forgets to round where it inlines this.
+  [[nodiscard, gnu::noinline]] Vec3f read(const std::vector<float>& bricks, int channels) const {
     if (slot == LightBricks::kAbsent) return Vec3f(0.0f);
     constexpr std::size_t kBrick = std::size_t(LightBricks::kTexels) * LightBricks::kTexels * LightBricks::kTexels;
-    Vec3 sum(0.0);
+    double sum[3] = {0.0, 0.0, 0.0};
     for (unsigned q = 0; q < 8; ++q) {
       if (weight[q] == 0.0) continue;
       const float* from = &bricks[(std::size_t(slot) * kBrick + texel[q]) * std::size_t(channels)];
       for (int c = 0; c < 3; ++c) sum[c] += weight[q] * double(from[channels == 3 ? c : 0]);
     }
-    return Vec3f(sum);
+    return {float(sum[0]), float(sum[1]), float(sum[2])};
   }
 };
 
-/// Moving every texel to one isovalue makes the sum of texels linear in what is stored, so that hardware filters it.
-void move_to_isovalue(IlluminationGrid& light, const Volume& volume, float isovalue) {
-  const TrilinearField field(volume);
+/// Moving every texel to one isovalue and to no normal makes the sum of texels linear in what is stored, so that
+/// hardware filters it.
+void move_to_isovalue(IlluminationGrid& light, const NearField& near_field, const Volume& volume, float isovalue) {
   const IndexToWorld to_volume = index_to_index(light.lattice, volume.lattice());
-  const std::vector<float>& slopes = light.detail.slopes;
+  const LightDetail& detail = light.detail;
+  const bool turned = !detail.normal_slopes[0].empty();
   const auto channels = std::size_t(light.channels);
   std::size_t v = 0;
   for (int k = 0; k < light.lattice.size.z; ++k) {
     for (int j = 0; j < light.lattice.size.y; ++j) {
       for (int i = 0; i < light.lattice.size.x; ++i) {
-        const double step = field.value(to_volume.world({i, j, k})) - double(isovalue);
+        const Vec3 centre = to_volume.world({i, j, k});
+        const double step = near_field.field().value(centre) - double(isovalue);
+        const Vec3 normal = turned ? Vec3(Vec3f(near_field.ahead(centre).downhill)) : Vec3(0.0);
         for (std::size_t c = 0; c < channels; ++c, ++v) {
-          light.values[v] = float(double(light.values[v]) - double(slopes[v]) * step);
+          double value = double(light.values[v]);
+          if (!detail.slopes.empty()) value -= double(detail.slopes[v]) * step;
+          for (unsigned a = 0; turned && a < 3; ++a) value -= double(detail.normal_slopes[a][v]) * normal[int(a)];
+          light.values[v] = float(value);
         }
       }
     }
   }
 }
 
+void require_slopes(const IlluminationGrid& light, const std::vector<float>& slopes, bool wanted) {
+  const std::size_t count = wanted ? light.values.size() : 0;
+  if (slopes.size() == count) return;
+  throw InvalidInput(fmt::format("a light of {} values with {} slopes: none or as many are needed", light.values.size(),
+                                 slopes.size()));
+}
+
 }  // namespace
 
 struct LightReader::Impl {
+  /// The sum of texels at a point of the texels' index space.
+  [[nodiscard]] Vec3 texels_at(const Vec3& texel, double isovalue, const Vec3& normal) const {
+    if (bricks) {
+      const BrickPlace place(*bricks, offsets.lattice.size, texel);
+      return sum(bricks->values, bricks->slopes, bricks->normal_slopes, isovalue, normal,
+                 [&](const std::vector<float>& from) { return place.read(from, bricks->channels); });
+    }
+    return sum(offsets, slopes, normal_slopes, isovalue, normal,
+               [&](const IlluminationGrid& from) { return from.at_index(texel); });
+  }
+
+  template <class Texels, class Read>
+  [[nodiscard]] Vec3 sum(const Texels& values, const Texels& by_isovalue, const std::array<Texels, 3>& by_normal,
+                         double isovalue, const Vec3& normal, const Read& read) const {
+    Vec3 e(read(values));
+    if (sloped) e += Vec3(read(by_isovalue)) * (isovalue - double(reference));
+    for (unsigned a = 0; turned && a < 3; ++a) e += Vec3(read(by_normal[a])) * normal[int(a)];
+    return e;
+  }
+
   NearField near_field;
   IndexToWorld volume_to_texels;
   IndexToWorld volume_frame;
-  IlluminationGrid offsets;  ///< its detail without slopes
+  IlluminationGrid offsets;  ///< its detail without slopes of either kind
   IlluminationGrid slopes;
+  std::array<IlluminationGrid, 3> normal_slopes;
   std::optional<LightBricks> bricks;
   float reference = 0.0f;
   bool sloped = false;
+  bool turned = false;
 };
 
 LightReader::LightReader(const Volume& volume, const IlluminationGrid& light, TexelStorage storage, const Run& run) {
-  const std::vector<float>& slopes = light.detail.slopes;
-  if (!slopes.empty() && slopes.size() != light.values.size()) {
-    throw InvalidInput(fmt::format("a light of {} values with {} slopes: none or as many are needed",
-                                   light.values.size(), slopes.size()));
-  }
+  const LightDetail& detail = light.detail;
+  require_slopes(light, detail.slopes, !detail.slopes.empty());
+  for (const auto& slopes : detail.normal_slopes) require_slopes(light, slopes, !detail.normal_slopes[0].empty());
   auto impl = std::make_unique<Impl>(Impl{.near_field = NearField(volume),
                                           .volume_to_texels = index_to_index(volume.lattice(), light.lattice),
                                           .volume_frame = volume.lattice().frame,
                                           .offsets = light,
                                           .slopes = {},
+                                          .normal_slopes = {},
                                           .bricks = {},
                                           .reference = 0.0f,
-                                          .sloped = !slopes.empty()});
-  if (light.detail.texel_light == TexelLight::kOwn) take_off_near_field(volume, impl->offsets, run);
+                                          .sloped = !detail.slopes.empty(),
+                                          .turned = !detail.normal_slopes[0].empty()});
+  if (detail.texel_light == TexelLight::kOwn) take_off_near_field(volume, impl->offsets, run);
   const ValueRange all = value_range(volume);
-  const ValueRange lit = light.detail.isovalues.value_or(all);
-  if (impl->sloped) {
-    impl->reference = 0.5f * (std::max(all.low, lit.low) + std::min(all.high, lit.high));
-    move_to_isovalue(impl->offsets, volume, impl->reference);
-  }
+  const ValueRange lit = detail.isovalues.value_or(all);
+  if (impl->sloped) impl->reference = 0.5f * (std::max(all.low, lit.low) + std::min(all.high, lit.high));
+  if (impl->sloped || impl->turned) move_to_isovalue(impl->offsets, impl->near_field, volume, impl->reference);
   if (storage == TexelStorage::kBricks && (lit.low > all.low || lit.high < all.high)) {
     LightBricks bricks = make_light_bricks(volume, impl->offsets, lit);
-    if (bricks.stored() < light.values.size() + slopes.size()) {
+    if (bricks.stored() < light.values.size() * std::size_t(detail.numbers())) {
       impl->bricks = std::move(bricks);
       impl->offsets.values = {};
     }
   }
-  if (impl->sloped && !impl->bricks) {
-    impl->slopes.lattice = light.lattice;
-    impl->slopes.channels = light.channels;
-    impl->slopes.values = slopes;
-  }
+  const auto keep = [&](const std::vector<float>& slopes, IlluminationGrid& grid) {
+    if (slopes.empty() || impl->bricks) return;
+    grid.lattice = light.lattice;
+    grid.channels = light.channels;
+    grid.values = slopes;
+  };
+  keep(detail.slopes, impl->slopes);
+  for (unsigned a = 0; a < 3; ++a) keep(detail.normal_slopes[a], impl->normal_slopes[a]);
   impl->offsets.detail.slopes = {};
+  impl->offsets.detail.normal_slopes = {};
   impl_ = std::move(impl);
 }
 
@@ -132,26 +170,15 @@ Vec3f LightReader::at_index(const Vec3& index) const { return at_index(index, im
 
 Vec3f LightReader::at_index(const Vec3& index, double isovalue) const {
   const Impl& self = *impl_;
-  const Vec3 texel = self.volume_to_texels.world(index);
   const LightDetail& detail = self.offsets.detail;
-  Vec3 e;
-  Vec3 slope(0.0);
-  if (self.bricks) {
-    const BrickPlace place(*self.bricks, self.offsets.lattice.size, texel);
-    e = Vec3(place.read(self.bricks->values, self.bricks->channels));
-    if (self.sloped) slope = Vec3(place.read(self.bricks->slopes, self.bricks->channels));
-  } else {
-    e = Vec3(self.offsets.at_index(texel));
-    if (self.sloped) slope = Vec3(self.slopes.at_index(texel));
-  }
-  if (self.sloped) e += slope * (isovalue - double(self.reference));
-  if (!self.sloped && detail.near_field.empty()) return Vec3f(e);
-  if (!detail.near_field.empty()) {
-    const NearField::Ahead ahead = self.near_field.ahead(index);
-    for (const NearFieldTerm& term : detail.near_field) {
-      const float openness = self.near_field.openness(index, ahead, isovalue, double(term.step));
-      e += Vec3(term.weight) * double(openness - term.mean);
-    }
+  const Vec3 texel = self.volume_to_texels.world(index);
+  const bool near = !detail.near_field.empty();
+  if (!self.sloped && !self.turned && !near) return Vec3f(self.texels_at(texel, isovalue, Vec3(0.0)));
+  const NearField::Ahead ahead = near || self.turned ? self.near_field.ahead(index) : NearField::Ahead{};
+  Vec3 e = self.texels_at(texel, isovalue, ahead.downhill);
+  for (const NearFieldTerm& term : detail.near_field) {
+    const float openness = self.near_field.openness(index, ahead, isovalue, double(term.step));
+    e += Vec3(term.weight) * double(openness - term.mean);
   }
   for (int c = 0; c < 3; ++c) e[c] = std::clamp(e[c], 0.0, double(detail.ceiling));
   return Vec3f(e);
@@ -161,6 +188,9 @@ Vec3f LightReader::at_world(const Vec3& world) const { return at_index(impl_->vo
 
 const IlluminationGrid& LightReader::offsets() const { return impl_->offsets; }
 const std::vector<float>& LightReader::slopes() const { return impl_->slopes.values; }
+const std::vector<float>& LightReader::normal_slopes(std::size_t axis) const {
+  return impl_->normal_slopes[axis].values;
+}
 const LightBricks* LightReader::bricks() const { return impl_->bricks ? &*impl_->bricks : nullptr; }
 float LightReader::reference_isovalue() const { return impl_->reference; }
 

@@ -17,7 +17,9 @@ NearField::Ahead NearField::ahead(const Vec3& index) const {
   const Vec3 gradient = field_.world_gradient(index, GradientKind::kCentralDifferences);
   const double steepness = glm::length(gradient);
   if (!(steepness > 0.0)) return {};
-  return {.step = world_to_index_ * (gradient * (-spacing_ / steepness)), .fall = steepness * spacing_};
+  return {.step = world_to_index_ * (gradient * (-spacing_ / steepness)),
+          .downhill = gradient * (-1.0 / steepness),
+          .fall = steepness * spacing_};
 }
 
 float NearField::openness(const Vec3& index, const Ahead& ahead, double isovalue, double step) const {

@@ -17,7 +17,8 @@ class NearField {
   /// One mean grid spacing towards lower values, in index space, and by how much f falls over it as the gradient says.
   struct Ahead {
     Vec3 step{0.0};
-    double fall = 0.0;  ///< 0 where there is no gradient
+    Vec3 downhill{0.0};  ///< the same way in world space, of length one; zero where there is no gradient
+    double fall = 0.0;   ///< 0 where there is no gradient
   };
   [[nodiscard]] Ahead ahead(const Vec3& index) const;
   /// -1 (closed) to 1 (open) at a point of index space; 0 where there is no gradient. `step` as in NearFieldTerm.

@@ -16,21 +16,10 @@ namespace isolux {
 namespace {
 
 using Corners = std::array<std::size_t, 8>;
-using PerCorner = std::array<float, 8>;
 
 /// Isovalues that lie closer together than this part of the volume's range say nothing of a slope.
 constexpr float kLeastSpread = 1e-4f;
 constexpr float kSlopePrior = 0.25f;  // samples that say that light does not change with the isovalue
-
-PerCorner weights(const std::array<float, 3>& in_cell) {
-  PerCorner w{};
-  for (unsigned q = 0; q < 8; ++q) {
-    const float x = (q & 1u) != 0 ? in_cell[0] : 1.0f - in_cell[0];
-    const float y = (q >> 1 & 1u) != 0 ? in_cell[1] : 1.0f - in_cell[1];
-    w[q] = x * y * ((q >> 2) != 0 ? in_cell[2] : 1.0f - in_cell[2]);
-  }
-  return w;
-}
 
 }  // namespace
 
@@ -105,10 +94,10 @@ void TexelMeans::Impl::measure(const Volume& volume, const Run& run) {
   spreads.resize(texels.count());
   std::vector<double> moments(texels.count(), 0.0);
   for_each_cell(run, [&](const Corners& corners, std::span<const Row> here) {
-    PerCorner total{};
+    PerCorner<float> total{};
     std::array<double, 8> moment{};
     for (const Row& row : here) {
-      const PerCorner w = weights(row.in_cell);
+      const PerCorner<float> w = corner_weights(row.in_cell);
       for (unsigned q = 0; q < 8; ++q) total[q] += w[q];
       for (unsigned q = 0; q < 8; ++q) moment[q] += double(w[q]) * double(row.isovalue);
     }
@@ -120,10 +109,10 @@ void TexelMeans::Impl::measure(const Volume& volume, const Run& run) {
   for (std::size_t t = 0; t < spreads.size(); ++t)
     if (spreads[t].weight > 0.0f) spreads[t].isovalue = float(moments[t] / double(spreads[t].weight));
   for_each_cell(run, [&](const Corners& corners, std::span<const Row> here) {
-    PerCorner lever{};
-    PerCorner squares{};
+    PerCorner<float> lever{};
+    PerCorner<float> squares{};
     for (const Row& row : here) {
-      const PerCorner w = weights(row.in_cell);
+      const PerCorner<float> w = corner_weights(row.in_cell);
       for (unsigned q = 0; q < 8; ++q) {
         const float d = row.isovalue - spreads[corners[q]].isovalue;
         lever[q] += w[q] * d;
@@ -160,12 +149,12 @@ void TexelMeans::Impl::measure(const Volume& volume, const Run& run) {
 template <int channels>
 void TexelMeans::Impl::add_up(std::span<const float> radiance, std::vector<float>& sums, const Run& run) const {
   for_each_cell(run, [&](const Corners& corners, std::span<const Row> here) {
-    std::array<PerCorner, channels> light{};
-    std::array<PerCorner, channels> moment{};
-    PerCorner isovalue{};
+    std::array<PerCorner<float>, channels> light{};
+    std::array<PerCorner<float>, channels> moment{};
+    PerCorner<float> isovalue{};
     for (unsigned q = 0; q < 8; ++q) isovalue[q] = spreads[corners[q]].isovalue;
     for (const Row& row : here) {
-      const PerCorner w = weights(row.in_cell);
+      const PerCorner<float> w = corner_weights(row.in_cell);
       for (std::size_t c = 0; c < channels; ++c) {
         const float e = radiance[row.site * std::size_t(channels) + c];
         for (unsigned q = 0; q < 8; ++q) {

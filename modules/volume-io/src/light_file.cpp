@@ -59,36 +59,54 @@ std::vector<const IlluminationGrid*> sides_of(const LightFile& light) {
   return sides;
 }
 
-/// Of each texel the values of a side's channels, then their slopes, then the next side's.
+/// What a side holds of each texel, in the file's order: each channel's values, slopes, and slopes along the normal's
+/// x, y and z, as far as they are there. `Grid` is an IlluminationGrid or a constant one.
+template <class Grid>
+auto parts_of(Grid& side) {
+  std::vector<decltype(&side.values)> parts{&side.values, &side.detail.slopes};
+  for (auto& slopes : side.detail.normal_slopes) parts.push_back(&slopes);
+  return parts;
+}
+
+/// Of each texel a side's numbers, then the next side's.
 std::vector<float> interleave(const std::vector<const IlluminationGrid*>& sides) {
   const auto channels = std::size_t(sides.front()->channels);
   std::vector<float> all;
-  all.reserve(2 * sides.size() * sides.front()->values.size());
+  all.reserve(sides.size() * sides.front()->values.size() * std::size_t(sides.front()->detail.numbers()));
   for (std::size_t at = 0; at < sides.front()->values.size(); at += channels) {
-    for (const IlluminationGrid* side : sides) {
-      all.insert(all.end(), &side->values[at], &side->values[at] + channels);
-      if (side->detail.slopes.empty()) continue;
-      all.insert(all.end(), &side->detail.slopes[at], &side->detail.slopes[at] + channels);
-    }
+    for (const IlluminationGrid* side : sides)
+      for (const std::vector<float>* part : parts_of(*side))
+        if (!part->empty()) all.insert(all.end(), &(*part)[at], &(*part)[at] + channels);
   }
   return all;
 }
 
+/// What a texel's numbers are, beside its values.
+struct TexelNumbers {
+  bool sloped = false;
+  bool turned = false;
+
+  [[nodiscard]] std::size_t count() const { return 1 + (sloped ? 1 : 0) + (turned ? 3 : 0); }
+};
+
 /// The numbers of one side among `stride` a texel, from `first` on.
-void take_side(const std::vector<float>& all, std::size_t first, std::size_t stride, bool sloped,
+void take_side(const std::vector<float>& all, std::size_t first, std::size_t stride, const TexelNumbers& numbers,
                IlluminationGrid& grid) {
   const auto channels = std::size_t(grid.channels);
-  grid.values.reserve(all.size() / stride * channels);
-  for (std::size_t at = first; at < all.size(); at += stride) {
-    grid.values.insert(grid.values.end(), &all[at], &all[at] + channels);
-    if (!sloped) continue;
-    grid.detail.slopes.insert(grid.detail.slopes.end(), &all[at] + channels, &all[at] + 2 * channels);
+  const std::vector<std::vector<float>*> parts = parts_of(grid);
+  for (std::size_t p = 0; p < parts.size(); ++p) {
+    if (p > 0 && !(p == 1 ? numbers.sloped : numbers.turned)) continue;
+    parts[p]->reserve(all.size() / stride * channels);
+    for (std::size_t at = first; at < all.size(); at += stride)
+      parts[p]->insert(parts[p]->end(), &all[at], &all[at] + channels);
+    first += channels;
   }
 }
 
 void require_like(const IlluminationGrid& outer, const IlluminationGrid& inner, const std::string& path) {
   if (inner.lattice.size == outer.lattice.size && inner.channels == outer.channels &&
-      inner.values.size() == outer.values.size() && inner.detail.slopes.size() == outer.detail.slopes.size())
+      inner.values.size() == outer.values.size() && inner.detail.slopes.size() == outer.detail.slopes.size() &&
+      inner.detail.normal_slopes[0].size() == outer.detail.normal_slopes[0].size())
     return;
   throw InvalidInput(
       fmt::format("{}: the light of the inner side is laid out differently than the outer side's", path));
@@ -140,24 +158,28 @@ struct ChannelAxis {
   std::size_t numbers = 1;  ///< a texel
   std::size_t sides = 1;
   std::size_t channels = 1;  ///< a side
-  bool sloped = false;
+  TexelNumbers of_channel{};
 };
 
 /// \throw InvalidInput if no light has such axes
 ChannelAxis channel_axis(const std::string& path, const detail::NrrdHeader& header) {
   const std::size_t axes = header.axes.size();
   ChannelAxis axis{.numbers = axes == 4 ? std::size_t(header.axes.front().size) : 1,
-                   .sides = has_both_sides(path, header.key_values) ? 2U : 1U};
+                   .sides = has_both_sides(path, header.key_values) ? 2U : 1U,
+                   .channels = 1,
+                   .of_channel = {}};
   const std::size_t a_side = axis.numbers / axis.sides;
-  const bool known = axis.numbers % axis.sides == 0 &&
-                     (a_side == 2 || a_side == 3 || a_side == 6 || (a_side == 1 && (axes == 3 || axis.sides == 2)));
-  if ((axes != 3 && axes != 4) || !known) {
-    throw InvalidInput(fmt::format("{}: a light file has 3 axes, or 4 with the first of size {}; this has {}", path,
-                                   axis.sides == 2 ? "2, 4, 6 or 12 for both sides" : "2, 3 or 6",
-                                   axes == 4 ? fmt::format("4 with {}", axis.numbers) : std::to_string(axes)));
-  }
   axis.channels = a_side % 3 == 0 ? 3 : 1;
-  axis.sloped = a_side == 2 * axis.channels;
+  const std::size_t numbers = a_side / axis.channels;
+  axis.of_channel = {.sloped = numbers == 2 || numbers == 5, .turned = numbers >= 4};
+  const bool known = axis.numbers % axis.sides == 0 && numbers == axis.of_channel.count() &&
+                     (a_side != 1 || axes == 3 || axis.sides == 2);
+  if ((axes != 3 && axes != 4) || !known) {
+    throw InvalidInput(
+        fmt::format("{}: a light file has 3 axes, or 4 with the first of size {}; this has {}", path,
+                    axis.sides == 2 ? "2, 4, 6, 8, 10, 12, 24 or 30 for both sides" : "2, 3, 4, 5, 6, 12 or 15",
+                    axes == 4 ? fmt::format("4 with {}", axis.numbers) : std::to_string(axes)));
+  }
   return axis;
 }
 
@@ -174,9 +196,9 @@ void write_light(const LightFile& light, const std::string& path, const std::str
                  const LightWriteOptions& options) {
   if (light.inner) require_like(light.grid, *light.inner, path);
   const auto sides = sides_of(light);
-  const bool sloped = !light.grid.detail.slopes.empty();
+  const int numbers = light.grid.detail.numbers();
   detail::NrrdImage image{.type = ScalarType::kFloat32,
-                          .channels = light.grid.channels * (sloped ? 2 : 1) * int(sides.size()),
+                          .channels = light.grid.channels * numbers * int(sides.size()),
                           .lattice = light.grid.lattice,
                           .space = space,
                           .key_values = light.metadata,
@@ -190,7 +212,7 @@ void write_light(const LightFile& light, const std::string& path, const std::str
   }
   write_atomically(path, [&](std::ostream& out) {
     detail::write_nrrd_header(out, image);
-    if (sloped || light.inner) {
+    if (numbers > 1 || light.inner) {
       detail::write_nrrd_values(out, image, interleave(sides));
     } else {
       detail::write_nrrd_values(out, image, light.grid.values);
@@ -208,11 +230,11 @@ LightFile read_light(const std::string& path) {
   if (!std::all_of(values.begin(), values.end(), [](float v) { return std::isfinite(v); }))
     throw InvalidInput(fmt::format("{}: a light file's values are finite; this has others", path));
   if (axis.sides == 2) light.inner = light.grid;
-  if (axis.sides == 1 && !axis.sloped) {
+  if (axis.sides == 1 && axis.of_channel.count() == 1) {
     light.grid.values = std::move(values);
   } else {
-    take_side(values, 0, axis.numbers, axis.sloped, light.grid);
-    if (light.inner) take_side(values, axis.numbers / 2, axis.numbers, axis.sloped, *light.inner);
+    take_side(values, 0, axis.numbers, axis.of_channel, light.grid);
+    if (light.inner) take_side(values, axis.numbers / 2, axis.numbers, axis.of_channel, *light.inner);
   }
   light.metadata = std::move(header.key_values);
   read_detail(path, light.metadata, LevelSetSide::kOuter, light.grid.detail);

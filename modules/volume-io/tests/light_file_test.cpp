@@ -35,12 +35,16 @@ TEST(LightFile, RoundTripsGreyAndColour) {
   }
 }
 
-/// Numbers that tell side, kind, texel and channel: i and i + .25 outside, i + .5 and i + .75 inside.
-LightFile example_of_both(int channels, bool sloped) {
+/// Numbers that tell side, kind, texel and channel: i and i + .25 outside, i + .5 and i + .75 inside; along the
+/// normal's axes thousands more.
+LightFile example_of_both(int channels, bool sloped, bool turned = false) {
   LightFile light = example(channels);
   for (std::size_t i = 0; i < light.grid.values.size(); ++i) light.grid.values[i] = float(i);
   light.inner = light.grid;
   for (float& v : light.inner->values) v += 0.5f;
+  for (IlluminationGrid* side : {&light.grid, &*light.inner})
+    for (std::size_t a = 0; turned && a < 3; ++a)
+      for (const float v : side->values) side->detail.normal_slopes[a].push_back(v + 1000.0f * float(a + 1));
   if (!sloped) return light;
   for (IlluminationGrid* side : {&light.grid, &*light.inner}) {
     for (const float v : side->values) side->detail.slopes.push_back(v + 0.25f);
@@ -84,8 +88,8 @@ TEST(LightFile, KeepsTheNearFieldOfTexelsOwnLightUnderItsOwnName) {
 TEST(LightFile, RoundTripsBothSides) {
   const test::TemporaryFolder folder;
   for (const int channels : {1, 3}) {
-    for (const bool sloped : {false, true}) {
-      const LightFile light = example_of_both(channels, sloped);
+    for (const int kind : {0, 1, 2, 3}) {
+      const LightFile light = example_of_both(channels, (kind & 1) != 0, (kind & 2) != 0);
       write_light(light, folder.file("l.nrrd"), "left-posterior-superior");
       const LightFile back = read_light(folder.file("l.nrrd"));
       ASSERT_TRUE(back.inner.has_value());
@@ -94,6 +98,7 @@ TEST(LightFile, RoundTripsBothSides) {
         EXPECT_EQ(read.channels, channels);
         EXPECT_EQ(read.values, written.values);
         EXPECT_EQ(read.detail.slopes, written.detail.slopes);
+        EXPECT_EQ(read.detail.normal_slopes, written.detail.normal_slopes);
         EXPECT_EQ(read.detail.ceiling, written.detail.ceiling);
         ASSERT_EQ(read.detail.near_field.size(), written.detail.near_field.size());
         for (std::size_t t = 0; t < read.detail.near_field.size(); ++t) {
@@ -108,17 +113,35 @@ TEST(LightFile, RoundTripsBothSides) {
   }
 }
 
+TEST(LightFile, RoundTripsNormalSlopesOfOneSide) {
+  const test::TemporaryFolder folder;
+  for (const int channels : {1, 3}) {
+    for (const bool sloped : {false, true}) {
+      LightFile light = example_of_both(channels, sloped, true);
+      light.inner.reset();
+      write_light(light, folder.file("l.nrrd"), "left-posterior-superior");
+      EXPECT_THAT(test::read_file(folder.file("l.nrrd")),
+                  HasSubstr("\nsizes: " + std::to_string(channels * (sloped ? 5 : 4)) + " 4 3 2\n"));
+      const LightFile back = read_light(folder.file("l.nrrd"));
+      EXPECT_FALSE(back.inner.has_value());
+      EXPECT_EQ(back.grid.values, light.grid.values);
+      EXPECT_EQ(back.grid.detail.slopes, light.grid.detail.slopes);
+      EXPECT_EQ(back.grid.detail.normal_slopes, light.grid.detail.normal_slopes);
+    }
+  }
+}
+
 // The first texel of a file: outer values, outer slopes, inner values, inner slopes, so that what a program takes for
 // the first channels is the outer side's light.
 TEST(LightFile, HasTheInnerSideBehindTheOuter) {
   const test::TemporaryFolder folder;
-  const auto first_texel = [&](int channels, bool sloped, const char* sizes) {
-    write_light(example_of_both(channels, sloped), folder.file("l.nrrd"), "left-posterior-superior");
+  const auto first_texel = [&](int channels, bool sloped, const char* sizes, bool turned = false) {
+    write_light(example_of_both(channels, sloped, turned), folder.file("l.nrrd"), "left-posterior-superior");
     const std::string text = test::read_file(folder.file("l.nrrd"));
     EXPECT_THAT(text, HasSubstr(sizes));
     EXPECT_THAT(text, HasSubstr("\nkinds: vector domain domain domain\n"));
     EXPECT_THAT(text, HasSubstr("\nisolux.sides:=both\n"));
-    std::vector<float> numbers(std::size_t(channels) * (sloped ? 4 : 2));
+    std::vector<float> numbers(std::size_t(channels) * (turned ? 10 : sloped ? 4 : 2));
     std::memcpy(numbers.data(), text.data() + text.find("\n\n") + 2, numbers.size() * sizeof(float));
     return numbers;
   };
@@ -127,6 +150,8 @@ TEST(LightFile, HasTheInnerSideBehindTheOuter) {
   EXPECT_EQ(first_texel(3, false, "\nsizes: 6 4 3 2\n"), (std::vector<float>{0, 1, 2, 0.5f, 1.5f, 2.5f}));
   EXPECT_EQ(first_texel(3, true, "\nsizes: 12 4 3 2\n"),
             (std::vector<float>{0, 1, 2, 0.25f, 1.25f, 2.25f, 0.5f, 1.5f, 2.5f, 0.75f, 1.75f, 2.75f}));
+  EXPECT_EQ(first_texel(1, true, "\nsizes: 10 4 3 2\n", true),
+            (std::vector<float>{0, 0.25f, 1000, 2000, 3000, 0.5f, 0.75f, 1000.5f, 2000.5f, 3000.5f}));
 }
 
 TEST(LightFile, TellsSidesFromSlopesByItsKey) {
@@ -145,7 +170,8 @@ TEST(LightFile, TellsSidesFromSlopesByItsKey) {
   EXPECT_TRUE(both.grid.detail.slopes.empty());
   EXPECT_EQ(both.inner->values, std::vector<float>{2});
   EXPECT_THAT(test::error_of([&] { (void)read("isolux.sides:=both\n", "3 1 1 1", "abc"); }),
-              HasSubstr("2, 4, 6 or 12 for both sides"));
+              HasSubstr("2, 4, 6, 8, 10, 12, 24 or 30 for both sides"));
+  EXPECT_THAT(test::error_of([&] { (void)read("", "9 1 1 1", "abcdefghi"); }), HasSubstr("2, 3, 4, 5, 6, 12 or 15"));
   EXPECT_THAT(test::error_of([&] { (void)read("isolux.sides:=left\n", "2 1 1 1", "ab"); }),
               HasSubstr("allowed are outer, both"));
 }

@@ -49,44 +49,58 @@ LightTextures::LightTextures(const Volume& volume, const IlluminationGrid& light
       terms_(light.detail.near_field),
       ceiling_(light.detail.ceiling) {
   upload(LightReader(volume, light, TexelStorage::kBricks), light);
-  if (terms_.empty()) return;
+  if (!kind().at_vertices()) return;
   values_ = upload_values(volume);
   memory_.volume = values_->bytes();
 }
 
 void LightTextures::upload(const LightReader& reader, const IlluminationGrid& light) {
   reference_isovalue_ = reader.reference_isovalue();
-  const std::vector<float>& slopes = light.detail.slopes;
-  for (const float slope : slopes) slope_gain_ = std::max(slope_gain_, std::fabs(slope));
-  // float16 would lose slopes per unit of a large range of values, and adds .0003 rms to light read so.
-  const auto scaled = [this](std::vector<float> values) {
-    for (float& slope : values) slope /= slope_gain_;
-    return values;
+  const LightDetail& detail = light.detail;
+  const auto largest = [](float gain, const std::vector<float>& slopes) {
+    for (const float slope : slopes) gain = std::max(gain, std::fabs(slope));
+    return gain;
   };
-  memory_.dense = (light.values.size() + slopes.size()) * sizeof(std::uint16_t);
+  slope_gain_ = largest(slope_gain_, detail.slopes);
+  for (const auto& slopes : detail.normal_slopes) normal_gain_ = largest(normal_gain_, slopes);
+  // float16 would lose slopes per unit of a large range of values, and adds .0003 rms to light read so.
+  const auto scaled = [](std::vector<float> slopes, float gain) {
+    for (float& slope : slopes) slope /= gain;
+    return slopes;
+  };
+  memory_.dense = light.values.size() * std::size_t(detail.numbers()) * sizeof(std::uint16_t);
   if (reader.bricks() != nullptr) {
     LightBricks bricks = *reader.bricks();
-    bricks.slopes = scaled(std::move(bricks.slopes));
+    bricks.slopes = scaled(std::move(bricks.slopes), slope_gain_);
+    for (auto& slopes : bricks.normal_slopes) slopes = scaled(std::move(slopes), normal_gain_);
     BrickTextures textures = upload_bricks(bricks, TexelFormat::kFloat16);
     memory_.light = textures.bytes();
     offsets_ = std::move(textures.values);
     slopes_ = std::move(textures.slopes);
+    normals_ = std::move(textures.normal_slopes);
     pages_ = std::move(textures.pages);
     return;
   }
   memory_.light = memory_.dense;
   offsets_ = upload_grid(reader.offsets(), volume_, "float16");
-  if (slopes.empty()) return;
-  IlluminationGrid grid(light.lattice, light.channels);
-  grid.values = scaled(slopes);
-  slopes_ = upload_grid(grid, volume_, "float16");
+  const auto upload_slopes = [&](const std::vector<float>& slopes, float gain, std::optional<Texture3D>& texture) {
+    if (slopes.empty()) return;
+    IlluminationGrid grid(light.lattice, light.channels);
+    grid.values = scaled(slopes, gain);
+    texture = upload_grid(grid, volume_, "float16");
+  };
+  upload_slopes(detail.slopes, slope_gain_, slopes_);
+  for (unsigned a = 0; a < 3; ++a) upload_slopes(detail.normal_slopes[a], normal_gain_, normals_[a]);
 }
 
 LightShader LightTextures::kind() const {
-  return {.slopes = slopes_.has_value(), .bricks = pages_.has_value(), .near_field_terms = int(terms_.size())};
+  return {.slopes = slopes_.has_value(),
+          .normals = normals_[0].has_value(),
+          .bricks = pages_.has_value(),
+          .near_field_terms = int(terms_.size())};
 }
 
-void LightTextures::bind_near_field(const ShaderProgram& program) const {
+void LightTextures::bind_at_vertices(const ShaderProgram& program) const {
   bind_texture(program, 2, "volume_values", *values_);
   glUniform3fv(program.uniform("grid_points"), 1, glm::value_ptr(Vec3f(volume_.size)));
   glUniformMatrix3fv(program.uniform("index_from_world"), 1, GL_FALSE,
@@ -99,23 +113,32 @@ void LightTextures::bind_near_field(const ShaderProgram& program) const {
     glUniform1f(element("near_field_mean"), terms_[t].mean);
     glUniform3fv(element("near_field_weight"), 1, glm::value_ptr(terms_[t].weight));
   }
+  if (!normals_[0]) return;
+  bind_places(program);
+  bind_texture(program, 4, "light_normals_x", *normals_[0]);
+  bind_texture(program, 5, "light_normals_y", *normals_[1]);
+  bind_texture(program, 6, "light_normals_z", *normals_[2]);
+  glUniform1f(program.uniform("light_normals_gain"), normal_gain_);
+}
+
+void LightTextures::bind_places(const ShaderProgram& program) const {
+  glUniform3fv(program.uniform("light_scale"), 1, glm::value_ptr(Vec3f(mapping_.scale)));
+  glUniform3fv(program.uniform("light_offset"), 1, glm::value_ptr(Vec3f(mapping_.offset)));
+  if (!pages_) return;
+  bind_texture(program, 3, "light_pages", *pages_);
+  glUniform3fv(program.uniform("light_texels"), 1, glm::value_ptr(texels_));
+  glUniform3fv(program.uniform("light_page_count"), 1, glm::value_ptr(Vec3f(pages_->size())));
+  glUniform3fv(program.uniform("atlas_texels"), 1, glm::value_ptr(Vec3f(offsets_.size())));
 }
 
 void LightTextures::bind(const ShaderProgram& program) const {
-  if (pages_) {
-    bind_texture(program, 3, "light_pages", *pages_);
-    glUniform3fv(program.uniform("light_texels"), 1, glm::value_ptr(texels_));
-    glUniform3fv(program.uniform("light_page_count"), 1, glm::value_ptr(Vec3f(pages_->size())));
-    glUniform3fv(program.uniform("atlas_texels"), 1, glm::value_ptr(Vec3f(offsets_.size())));
-  }
+  bind_places(program);
   if (slopes_) {
     bind_texture(program, 1, "light_slopes", *slopes_);
     glUniform1f(program.uniform("light_slope_gain"), slope_gain_);
   }
   bind_texture(program, 0, "light_offsets", offsets_);
   glUniform1f(program.uniform("light_gain"), float(offsets_.gain()));
-  glUniform3fv(program.uniform("light_scale"), 1, glm::value_ptr(Vec3f(mapping_.scale)));
-  glUniform3fv(program.uniform("light_offset"), 1, glm::value_ptr(Vec3f(mapping_.offset)));
   glUniform1f(program.uniform("reference_isovalue"), reference_isovalue_);
   glUniform1f(program.uniform("light_ceiling"), ceiling_);
 }

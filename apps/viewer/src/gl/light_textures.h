@@ -5,6 +5,7 @@
 #include <isolux/gl_texture/texture3d.h>
 #include <isolux/resample/light_reader.h>
 
+#include <array>
 #include <cstddef>
 #include <limits>
 #include <optional>
@@ -18,7 +19,7 @@ namespace isolux::viewer {
 struct LightMemory {
   std::size_t light = 0;   ///< texels, and page table where there is one
   std::size_t dense = 0;   ///< the same texels without bricks; equal to `light` where there are none
-  std::size_t volume = 0;  ///< of the volume's values, for the near field
+  std::size_t volume = 0;  ///< of the volume's values, for what is computed at vertices
 };
 
 /// A light as light_reader_glsl() reads it: its textures and uniforms. That of a known range of isovalues is kept in
@@ -30,8 +31,9 @@ class LightTextures {
 
   /// What its shader needs to know.
   [[nodiscard]] LightShader kind() const;
-  /// Sets the uniforms of near_field_glsl() of the program in use and binds the volume. \pre near-field terms
-  void bind_near_field(const ShaderProgram& program) const;
+  /// Sets the uniforms of light_at_vertices_glsl() of the program in use and binds the volume and textures. \pre
+  /// kind().at_vertices()
+  void bind_at_vertices(const ShaderProgram& program) const;
   /// Sets the uniforms of the program in use and binds the textures.
   void bind(const ShaderProgram& program) const;
 
@@ -39,18 +41,22 @@ class LightTextures {
 
  private:
   void upload(const LightReader& reader, const IlluminationGrid& light);
+  /// How a place of the box is found in the textures.
+  void bind_places(const ShaderProgram& program) const;
 
   Lattice volume_;
   TextureMapping mapping_;
   Vec3f texels_;
   Texture3D offsets_;
   std::optional<Texture3D> slopes_;
-  std::optional<Texture3D> pages_;   ///< with them the two above are atlases of bricks
-  std::optional<Texture3D> values_;  ///< of the volume, for the near field
+  std::array<std::optional<Texture3D>, 3> normals_;
+  std::optional<Texture3D> pages_;   ///< with them those above are atlases of bricks
+  std::optional<Texture3D> values_;  ///< of the volume, for what is computed at vertices
   std::vector<NearFieldTerm> terms_;
   float reference_isovalue_ = 0.0f;
   float ceiling_ = 0.0f;
   float slope_gain_ = std::numeric_limits<float>::min();
+  float normal_gain_ = std::numeric_limits<float>::min();
   LightMemory memory_;
 };
 

@@ -67,18 +67,18 @@ void SurfaceRenderer::set_surface(const IndexedMesh& mesh, float isovalue) {
   index_count_ = GLsizei(mesh.triangles.size() * 3);
   isovalue_ = isovalue;
   for (std::optional<Light>* light : {&light_, &inner_light_})
-    if (*light && (*light)->near_field) (*light)->near_field->known = false;
+    if (*light && (*light)->at_vertices) (*light)->at_vertices->known = false;
   set_exact_light({});
 }
 
-SurfaceRenderer::NearFieldAtVertices::NearFieldAtVertices(int terms)
-    : program({kNearFieldVertexShader, near_field_glsl(terms)}, {}, "at_vertex") {}
+SurfaceRenderer::LightAtVertices::LightAtVertices(const LightShader& kind)
+    : program({kLightVertexShader, light_at_vertices_glsl(kind)}, {}, "at_vertex") {}
 
 SurfaceRenderer::Light::Light(const Volume& volume, const IlluminationGrid& light, Side side)
     : textures(volume, light),
       program({kSurfaceVertexShader}, {fragment_shader(side == Side::kOuter ? Shading::kRead : Shading::kReadInner),
                                        light_reader_glsl(textures.kind())}) {
-  if (const int terms = textures.kind().near_field_terms; terms > 0) near_field.emplace(terms);
+  if (textures.kind().at_vertices()) at_vertices.emplace(textures.kind());
 }
 
 void SurfaceRenderer::set_light(const IlluminationGrid& light) {
@@ -96,22 +96,22 @@ void SurfaceRenderer::set_exact_light(std::span<const Vec3f> radiance) {
   if (has_exact_) exact_.fill(radiance.data(), radiance.size_bytes());
 }
 
-void SurfaceRenderer::compute_near_field(Light& light) const {
-  NearFieldAtVertices& near_field = *light.near_field;
-  if (near_field.known) return;
-  near_field.values.reserve(std::size_t(vertex_count_) * sizeof(Vec3f));
-  use(near_field.program);
-  light.textures.bind_near_field(near_field.program);
+void SurfaceRenderer::compute_at_vertices(Light& light) const {
+  LightAtVertices& added = *light.at_vertices;
+  if (added.known) return;
+  added.values.reserve(std::size_t(vertex_count_) * sizeof(Vec3f));
+  use(added.program);
+  light.textures.bind_at_vertices(added.program);
   vertex_array_.bind();
   glDisableVertexAttribArray(kExtraAttribute);
   glEnable(GL_RASTERIZER_DISCARD);
-  glBindBufferBase(GL_TRANSFORM_FEEDBACK_BUFFER, 0, near_field.values.name());
+  glBindBufferBase(GL_TRANSFORM_FEEDBACK_BUFFER, 0, added.values.name());
   glBeginTransformFeedback(GL_POINTS);
   glDrawArrays(GL_POINTS, 0, vertex_count_);
   glEndTransformFeedback();
   glBindBufferBase(GL_TRANSFORM_FEEDBACK_BUFFER, 0, 0);
   glDisable(GL_RASTERIZER_DISCARD);
-  near_field.known = true;
+  added.known = true;
 }
 
 void SurfaceRenderer::hand_on(const Buffer& values) const {
@@ -124,9 +124,9 @@ void SurfaceRenderer::hand_on(const Buffer& values) const {
 void SurfaceRenderer::read_from(Light& light, const SurfaceView& view) {
   vertex_array_.bind();
   glDisableVertexAttribArray(kExtraAttribute);
-  if (light.near_field) {
-    compute_near_field(light);
-    hand_on(light.near_field->values);
+  if (light.at_vertices) {
+    compute_at_vertices(light);
+    hand_on(light.at_vertices->values);
   }
   use(light.program, view);
   light.textures.bind(light.program);

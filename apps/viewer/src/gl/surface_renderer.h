@@ -49,9 +49,9 @@ class SurfaceRenderer {
   void draw(const SurfaceView& view);
 
  private:
-  /// What a light's near field adds to e at the vertices of one surface.
-  struct NearFieldAtVertices {
-    explicit NearFieldAtVertices(int terms);
+  /// What of a light is computed at the vertices of one surface: near field and the normal's part.
+  struct LightAtVertices {
+    explicit LightAtVertices(const LightShader& kind);
 
     ShaderProgram program;
     Buffer values{GL_ARRAY_BUFFER};
@@ -65,7 +65,7 @@ class SurfaceRenderer {
 
     LightTextures textures;
     ShaderProgram program;
-    std::optional<NearFieldAtVertices> near_field;
+    std::optional<LightAtVertices> at_vertices;
   };
 
   /// Puts the program into use with what vertices need.
@@ -73,9 +73,9 @@ class SurfaceRenderer {
   /// The same with what drawing needs.
   void use(const ShaderProgram& program, const SurfaceView& view) const;
   /// Once for all frames: pixels would fetch the volume ten times each. Needs a framebuffer, though it draws nothing.
-  void compute_near_field(Light& light) const;
+  void compute_at_vertices(Light& light) const;
   void read_from(Light& light, const SurfaceView& view);
-  /// e or what the near field adds to it: what the vertex shader hands on.
+  /// e or what is added to it at the vertices: what the vertex shader hands on.
   void hand_on(const Buffer& values) const;
 
   std::shared_ptr<const ViewedVolume> volume_;

@@ -3,7 +3,7 @@
 in vec3 centred;
 in vec3 outward;
 centroid in vec3 place;  // pixels that a triangle covers in part must not look beyond it: there may be no texels
-centroid in vec3 at_vertices;  // exact light, or what the near field adds
+centroid in vec3 at_vertices;  // exact light, or what is added at the vertices
 
 uniform vec3 eye;       // relative to the centre
 uniform vec3 albedo;
@@ -13,7 +13,7 @@ uniform vec3 line_colour;
 
 out vec4 colour;
 
-vec3 read_light(vec3 place, float isovalue, vec3 near_field);  // light_reader_glsl()
+vec3 read_light(vec3 place, float isovalue, vec3 at_vertices);  // light_reader_glsl()
 
 // A headlight over the viewer's shoulder and a hemisphere of sky above +z, as isolux render draws them.
 float local_light(vec3 n) {

@@ -2,7 +2,7 @@
 
 layout(location = 0) in vec3 position;  // world
 layout(location = 1) in vec3 normal;    // world
-layout(location = 2) in vec3 extra;     // e where it was traced here, or what the near field adds to it
+layout(location = 2) in vec3 extra;     // e where it was traced here, or what is added to what is read
 
 uniform vec3 centre;             // world; what follows is relative to it, so that far origins lose no bits
 uniform mat4 clip_from_centred;

@@ -13,23 +13,21 @@ namespace {
 
 /// y += a x, and sums of products in a fixed order.
 void add_scaled(FitVector& y, double a, const FitVector& x) {
-  for (std::size_t i = 0; i < y.values.size(); ++i) y.values[i] += float(a) * x.values[i];
-  for (std::size_t i = 0; i < y.slopes.size(); ++i) y.slopes[i] += float(a) * x.slopes[i];
+  for (std::size_t i = 0; i < y.numbers.size(); ++i) y.numbers[i] += float(a) * x.numbers[i];
   for (std::size_t t = 0; t < y.terms.size(); ++t) y.terms[t] += a * x.terms[t];
 }
 
 double product(const FitVector& x, const FitVector& y) {
   double sum = 0.0;
-  for (std::size_t i = 0; i < x.values.size(); ++i) sum += double(x.values[i]) * double(y.values[i]);
-  for (std::size_t i = 0; i < x.slopes.size(); ++i) sum += double(x.slopes[i]) * double(y.slopes[i]);
+  for (std::size_t i = 0; i < x.numbers.size(); ++i) sum += double(x.numbers[i]) * double(y.numbers[i]);
   for (std::size_t t = 0; t < x.terms.size(); ++t) sum += x.terms[t] * y.terms[t];
   return sum;
 }
 
 FitVector divided(const FitVector& x, const FitVector& by) {
   FitVector y = x;
-  for (std::size_t i = 0; i < y.values.size(); ++i) y.values[i] = by.values[i] > 0 ? y.values[i] / by.values[i] : 0;
-  for (std::size_t i = 0; i < y.slopes.size(); ++i) y.slopes[i] = by.slopes[i] > 0 ? y.slopes[i] / by.slopes[i] : 0;
+  for (std::size_t i = 0; i < y.numbers.size(); ++i)
+    y.numbers[i] = by.numbers[i] > 0 ? y.numbers[i] / by.numbers[i] : 0;
   for (std::size_t t = 0; t < y.terms.size(); ++t) y.terms[t] = by.terms[t] > 0 ? y.terms[t] / by.terms[t] : 0;
   return y;
 }
@@ -38,13 +36,17 @@ class Fit final : public Resampler {
  public:
   struct Options {
     bool slopes = true;
+    bool normals = true;
     bool near_field = true;
     double value_prior = 0.1;
     double slope_prior = 0.03;
+    double normal_prior = 0.03;
     int iterations = 8;
 
     void describe(OptionVisitor& option) {
       option("slopes", slopes, {.help = "a second number a texel: how its light changes with the isovalue"});
+      option("normals", normals,
+             {.help = "three more numbers a texel: how its light changes with the surface's normal"});
       option("near_field", near_field, {.help = "weigh in how open the volume itself is in front of a point"});
       option("value_prior", value_prior,
              {.min = 1e-6,
@@ -56,6 +58,11 @@ class Fit final : public Resampler {
               .max = 1e3,
               .unit = "samples",
               .help = "weight of no change with the isovalue in its slope; grows with the samples' noise"});
+      option("normal_prior", normal_prior,
+             {.min = 1e-6,
+              .max = 1e3,
+              .unit = "samples",
+              .help = "weight of no change with the normal in a texel; grows with the samples' noise"});
       option("iterations", iterations,
              {.min = 1,
               .max = 1000,
@@ -67,13 +74,16 @@ class Fit final : public Resampler {
   ResampledGrid resample(const Volume& volume, const SampleSet& samples, const Lattice& texels,
                          const Run& run) const override {
     require_samples(samples);
-    const FitSystem system(volume, samples, texels, options_.slopes ? SlopeTerms::kByIsovalue : SlopeTerms::kNone,
+    const FitTerms terms{.slopes = options_.slopes, .normals = options_.normals};
+    const FitSystem system(volume, samples, texels, terms,
                            options_.near_field ? NearFieldUse::kFitted : NearFieldUse::kNone, run);
     ResampledGrid result{.grid = IlluminationGrid(texels, samples.channels),
                          .lit = std::vector<std::uint8_t>(texels.count(), 0)};
     LightDetail& detail = result.grid.detail;
     detail.ceiling = *std::max_element(samples.radiance.begin(), samples.radiance.end());
-    if (options_.slopes) detail.slopes.assign(result.grid.values.size(), 0.0f);
+    if (terms.slopes) detail.slopes.assign(result.grid.values.size(), 0.0f);
+    for (std::vector<float>& slopes : detail.normal_slopes)
+      if (terms.normals) slopes.assign(result.grid.values.size(), 0.0f);
     if (options_.near_field) {
       for (std::size_t t = 0; t < kNearFieldSteps.size(); ++t) {
         detail.near_field.push_back(
@@ -96,7 +106,11 @@ class Fit final : public Resampler {
     variance /= double(samples.variance.size());
     power /= double(samples.radiance.size());
     const double noise = power > 0.0 ? 1.0 + variance / (kMisfit * kMisfit * power) : 1.0;
-    return {.value = options_.value_prior * noise, .slope = options_.slope_prior * noise};
+    FitDamping damping{options_.value_prior * noise};
+    std::size_t k = 1;
+    if (options_.slopes) damping[k++] = options_.slope_prior * noise;
+    for (; k < damping.size(); ++k) damping[k] = options_.normal_prior * noise;
+    return damping;
   }
 
   /// What to add to the prior. Reading clamps light to between black and the brightest sample, and the fit is of what
@@ -153,12 +167,17 @@ class Fit final : public Resampler {
     const FitVector x = solve(system, light, damping, prior, read_between(result.grid.detail));
     LightDetail& detail = result.grid.detail;
     const FitTexels& texels = system.texels();
+    const FitTerms& terms = system.terms();
     for (std::size_t n = 0; n < coverage.size(); ++n) {
       if (!(coverage[n] > 0.0f)) continue;
       const std::size_t t = texels.offsets()[n];
+      const std::size_t at = t * channels + first;
+      const float* numbers = &x.numbers[n * terms.count()];
       result.lit[t] = 1;
-      result.grid.values[t * channels + first] = prior.values[n] + x.values[n];
-      if (options_.slopes) detail.slopes[t * channels + first] = x.slopes[n] * texels.inverse_breadths()[n];
+      result.grid.values[at] = prior.numbers[n * terms.count()] + numbers[0];
+      if (terms.slopes) detail.slopes[at] = numbers[1] * texels.inverse_breadths()[n];
+      for (std::size_t a = 0; terms.normals && a < 3; ++a)
+        detail.normal_slopes[a][at] = numbers[terms.first_normal() + a];
     }
     for (std::size_t t = 0; t < detail.near_field.size(); ++t) {
       Vec3f& weight = detail.near_field[t].weight;

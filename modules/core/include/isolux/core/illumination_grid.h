@@ -3,6 +3,7 @@
 #include <isolux/core/lattice.h>
 #include <isolux/core/volume.h>
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -28,12 +29,16 @@ enum class TexelLight : std::uint8_t {
 /// Empty in a plain grid; a reader that does not know it reads the values alone.
 struct LightDetail {
   std::vector<float> slopes;  ///< change of e per unit of the isovalue about each texel, in the order of the values
+  /// Likewise per unit of x, y and z of the level set's unit normal towards lower values, world space; all or none.
+  std::array<std::vector<float>, 3> normal_slopes;
   std::vector<NearFieldTerm> near_field;
   TexelLight texel_light = TexelLight::kReduced;
   float ceiling = std::numeric_limits<float>::infinity();  ///< no light is above it (nor below 0)
   std::optional<ValueRange> isovalues{};  ///< the level sets that were lit; texels that none of them touches may be 0
 
-  [[nodiscard]] bool empty() const { return slopes.empty() && near_field.empty(); }
+  [[nodiscard]] bool empty() const { return slopes.empty() && normal_slopes[0].empty() && near_field.empty(); }
+  /// Numbers a value of the grid is stored as.
+  [[nodiscard]] int numbers() const { return 1 + (slopes.empty() ? 0 : 1) + (normal_slopes[0].empty() ? 0 : 3); }
 };
 
 /// A regular grid of e = irradiance/pi over a volume's box; what lights any isosurface later.

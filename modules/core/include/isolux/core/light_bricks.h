@@ -2,6 +2,7 @@
 
 #include <isolux/core/vec.h>
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -21,7 +22,8 @@ struct LightBricks {
   int channels = 1;
   std::vector<float>
       values;  ///< brick after brick, each channel fastest, then x, y, z; clamped beyond the light's edge
-  std::vector<float> slopes;  ///< the same, or empty
+  std::vector<float> slopes;                        ///< the same, or empty
+  std::array<std::vector<float>, 3> normal_slopes;  ///< likewise
 
   [[nodiscard]] std::size_t page_of(const Index3& page) const {
     return (std::size_t(page.z) * std::size_t(pages.y) + std::size_t(page.y)) * std::size_t(pages.x) +
@@ -34,7 +36,9 @@ struct LightBricks {
   /// Bricks there are.
   [[nodiscard]] std::size_t count() const { return values.size() / brick_size(); }
   /// Numbers stored, the page table included.
-  [[nodiscard]] std::size_t stored() const { return slots.size() + values.size() + slopes.size(); }
+  [[nodiscard]] std::size_t stored() const {
+    return slots.size() + values.size() + slopes.size() + 3 * normal_slopes[0].size();
+  }
 };
 
 }  // namespace isolux

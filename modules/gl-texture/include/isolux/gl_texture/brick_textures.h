@@ -4,6 +4,7 @@
 #include <isolux/gl_texture/texture3d.h>
 #include <isolux/gl_texture/texture_uploader.h>
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -16,9 +17,13 @@ struct BrickTextures {
   Texture3D pages;   ///< a texel of 10, 10, 10 and 2 bits a page, see page_entry(); not filtered
   Texture3D values;  ///< the atlas: bricks of kTexels^3 texels side by side
   std::optional<Texture3D> slopes;
+  std::array<std::optional<Texture3D>, 3> normal_slopes;
 
   [[nodiscard]] std::size_t bytes() const {
-    return pages.bytes() + values.bytes() + (slopes ? slopes->bytes() : std::size_t(0));
+    std::size_t all = pages.bytes() + values.bytes();
+    for (const std::optional<Texture3D>* atlas : {&slopes, &normal_slopes[0], &normal_slopes[1], &normal_slopes[2]})
+      if (*atlas) all += (*atlas)->bytes();
+    return all;
   }
 };
 

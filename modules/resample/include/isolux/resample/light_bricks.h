@@ -6,7 +6,7 @@
 
 namespace isolux {
 
-/// Values and slopes of `light` about the level sets of `isovalues`. Cost: one pass over the volume.
+/// Values and slopes of all kinds of `light` about the level sets of `isovalues`. Cost: one pass over the volume.
 [[nodiscard]] LightBricks make_light_bricks(const Volume& volume, const IlluminationGrid& light,
                                             const ValueRange& isovalues);
 

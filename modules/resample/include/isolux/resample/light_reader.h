@@ -19,9 +19,10 @@ enum class TexelStorage {
 
 /// Reads an illumination grid the best way known, with the volume at hand:
 ///
-///     e = clamp(V + S (h - h0) + sum over near-field terms of weight (openness - mean), 0, ceiling)
+///     e = clamp(V + S (h - h0) + B . n + sum over near-field terms of weight (openness - mean), 0, ceiling)
 ///
-/// V and S interpolate the textures below trilinearly, h is the isovalue of the point; docs/resampling.md derives it. A
+/// V, S and B interpolate the textures below trilinearly, h is the isovalue of the point and n its level set's normal
+/// towards lower values; docs/resampling.md derives it. A
 /// plain grid is read trilinearly. Immutable, callable from many threads; the volume must outlive it.
 class LightReader {
  public:
@@ -45,8 +46,10 @@ class LightReader {
   [[nodiscard]] const IlluminationGrid& offsets() const;
   /// S of the formula in the same layout; empty without slopes, or where there are bricks().
   [[nodiscard]] const std::vector<float>& slopes() const;
-  /// V and S in bricks; null unless asked for and smaller. Level sets outside the light's range are then dark where no
-  /// brick is.
+  /// Component x, y or z of B of the formula, likewise.
+  [[nodiscard]] const std::vector<float>& normal_slopes(std::size_t axis) const;
+  /// V, S and B in bricks; null unless asked for and smaller. Level sets outside the light's range are then dark where
+  /// no brick is.
   [[nodiscard]] const LightBricks* bricks() const;
   /// h0 of the formula.
   [[nodiscard]] float reference_isovalue() const;
@@ -59,21 +62,25 @@ class LightReader {
 /// What of the formula a light needs.
 struct LightShader {
   bool slopes = false;
+  bool normals = false;
   bool bricks = false;
   int near_field_terms = 0;
+
+  /// Whether anything of the formula is computed at vertices, by light_at_vertices_glsl().
+  [[nodiscard]] bool at_vertices() const { return normals || near_field_terms > 0; }
 
   bool operator==(const LightShader&) const = default;
 };
 
 /// The formula for one kind of light as a shader of its own in GLSL 3.30, to be linked to one that declares and calls
-/// `vec3 read_light(vec3 place, float isovalue, vec3 near_field)`: place in the volume's box from 0 to 1, and the sum
-/// over near-field terms there. It needs the uniforms that its first lines declare. Kinds are constants of the shader:
-/// one that branched on uniforms would pay for all of them.
+/// `vec3 read_light(vec3 place, float isovalue, vec3 at_vertices)`: place in the volume's box from 0 to 1, and what
+/// light_at_vertices_glsl() gives there. It needs the uniforms that its first lines declare. Kinds are constants of the
+/// shader: one that branched on uniforms would pay for all of them.
 [[nodiscard]] std::string light_reader_glsl(const LightShader& kind);
 
-/// `vec3 near_field(vec3 place, float isovalue)`, the sum over near-field terms, as a shader likewise, for any stage:
-/// six fetches of the volume and one a term. It may be computed at a surface's vertices and interpolated between them
-/// (docs/resampling.md has what that does to the error). \pre terms > 0
-[[nodiscard]] std::string near_field_glsl(int terms);
+/// `vec3 light_at_vertices(vec3 place, float isovalue)`, the sum over near-field terms and B . n, as a shader likewise,
+/// for any stage: six fetches of the volume, one a term, and three of the light. It may be computed at a surface's
+/// vertices and interpolated between them (docs/resampling.md has what that does to the error). \pre kind.at_vertices()
+[[nodiscard]] std::string light_at_vertices_glsl(const LightShader& kind);
 
 }  // namespace isolux
