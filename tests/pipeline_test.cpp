@@ -155,7 +155,7 @@ TEST(LightFile, KeepsWhatLetsLightBeReadFinely) {
 // A ball under the half sky: e = (1 + n.up)/2. The trilinear ball of 24^3 differs from the round one by .01, 16 rays at
 // each of eight sites a cell leave .02, and the file keeps the range that tells where there is light.
 TEST(Bake, FitsKnownIsovaluesAloneAndInBricks) {
-  const Volume volume = read_volume("gen:sphere:24");
+  const Volume volume = read_volume("gen:sphere:40");
   Scene scene;
   scene.environment = SkyEnvironment{.zenith = Vec3f(1.0f), .horizon = Vec3f(1.0f), .ground = Vec3f(0.0f)};
   for (const ValueRange range : {ValueRange{-0.3f, -0.3f}, ValueRange{-0.32f, -0.28f}}) {

@@ -8,6 +8,8 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <glm/common.hpp>
+#include <glm/vector_relational.hpp>
 #include <utility>
 #include <variant>
 
@@ -36,6 +38,13 @@ Sites first_of(const Sites& sites, std::size_t count) {
           .normals = {sites.normals.begin(), sites.normals.begin() + last}};
 }
 
+/// The fit's texels are few, as they hold more than a mean; reflections are read from means, which do not.
+Lattice at_least_one_a_cell(const Lattice& texels, const Lattice& volume) {
+  const Index3 cells = volume.size - 1;
+  if (glm::all(glm::greaterThanEqual(texels.size, cells))) return texels;
+  return cell_lattice(volume, glm::max(texels.size, cells));
+}
+
 }  // namespace
 
 KeptRays::KeptRays(const Volume& volume, const Scene& scene, const BakeSettings& given, const Stages& stages,
@@ -48,6 +57,7 @@ KeptRays::KeptRays(const Volume& volume, const Scene& scene, const BakeSettings&
     : volume_(volume),
       settings_(settings),
       texels_(texel_lattice(volume.lattice(), settings_)),
+      reflecting_(reads_means(settings_) ? at_least_one_a_cell(texels_, volume.lattice()) : texels_),
       begun_(std::move(found.begun)) {
   if (scene.sides != LitSides::kOuter)
     throw InvalidInput("rays are kept of one side; a scene that lights both sides is one for bake()");
@@ -64,7 +74,7 @@ KeptRays::KeptRays(const Volume& volume, const Scene& scene, const BakeSettings&
                              .kept = kept < rays ? kept : 0,
                              .outer = scene.outer,
                              .ends = settings_.trace.bounces == 0 ? LinkEnds::kDropped : LinkEnds::kKept,
-                             .texels = texels_,
+                             .texels = reflecting_,
                              .nets = has_target(settings_) ? RayNets::kIndependent : RayNets::kInterleaved};
   links_ = std::make_unique<LightLinks>(volume, std::move(found.sites), request, run);
   trace_seconds_ = watch.seconds();
@@ -72,15 +82,15 @@ KeptRays::KeptRays(const Volume& volume, const Scene& scene, const BakeSettings&
     if (!has_target(settings_)) ends_one_of_ = std::size_t(std::max(1, kept / kEndsEnough));
     return;
   }
-  const double a_texel = settings_.isovalues ? sites_a_texel(volume.lattice(), texels_, settings_)
-                                             : double(links_->sites().size()) / double(texels_.count());
+  const double a_texel = settings_.isovalues ? sites_a_texel(volume.lattice(), reflecting_, settings_)
+                                             : double(links_->sites().size()) / double(reflecting_.count());
   one_of_ = std::max<std::size_t>(1, std::size_t(a_texel / kSitesEnough * double(kept) / double(rays)));
 }
 
 IlluminationGrid KeptRays::between_reflections(const SampleSet& samples, const Run& run) {
   if (!reads_means(settings_)) return fill_unlit(resampler_->resample(volume_, samples, texels_, run), run);
   // Samples are always of the same sites: settings_ says how many bounces, hence whether of all or some.
-  if (!means_) means_.emplace(volume_, samples.sites, texels_, run);
+  if (!means_) means_.emplace(volume_, samples.sites, reflecting_, run);
   return fill_unlit(means_->of(samples.radiance, samples.channels, run), run);
 }
 

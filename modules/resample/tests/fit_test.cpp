@@ -133,14 +133,13 @@ TEST(Fit, FollowsLightThatChangesWithTheNormal) {
     const SampleSet others = random_samples(volume, 1000, 3, by_normal, 2);
     const Lattice texels = cell_lattice(volume.lattice());
     const auto error = [&](const std::string& normals) {
-      return reading_error(
-          volume, fill_unlit(fitted(volume, samples, texels, {{"normals", normals}, {"near_field", "false"}}), {}),
-          others);
+      const Settings settings{{"normals", normals}, {"near_field", "false"}, {"iterations", "60"}};
+      return reading_error(volume, fill_unlit(fitted(volume, samples, texels, settings), {}), others);
     };
-    // The light's own deviation is .4 / sqrt(3) = .23. With normals it is in reach but for the priors' pull (3 percent
-    // of a sample, 16 of them a texel).
+    // The light's own deviation is .4 / sqrt(3) = .23. With normals it is in reach but for the priors' pull: 3 percent
+    // of a sample against some 16 samples of a third each, and a tenth of one on the value, 1 to 2 percent together.
     EXPECT_GT(error("false"), 0.05);
-    EXPECT_LT(error("true"), 0.005);
+    EXPECT_LT(error("true"), 0.015);
   }
 }
 

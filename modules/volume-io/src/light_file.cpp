@@ -127,7 +127,8 @@ void write_detail(const LightDetail& extra, LevelSetSide side, KeyValues& pairs)
     pairs.erase(detail_key(side, near_field_name(kind)));
   if (!extra.near_field.empty())
     pairs[detail_key(side, near_field_name(extra.texel_light))] = near_field_text(extra.near_field);
-  if (!extra.empty()) pairs[detail_key(side, "light_ceiling")] = fmt::format("{}", extra.ceiling);
+  if (!extra.empty() && std::isfinite(extra.ceiling))
+    pairs[detail_key(side, "light_ceiling")] = fmt::format("{}", extra.ceiling);
 }
 
 void read_detail(const std::string& path, const KeyValues& pairs, LevelSetSide side, LightDetail& extra) {
@@ -153,6 +154,21 @@ bool has_both_sides(const std::string& path, const KeyValues& pairs) {
   throw InvalidInput(fmt::format("{}: isolux.sides '{}'; allowed are outer, both", path, it->second));
 }
 
+// What says that there are slopes along the normal, since four channels may be anything.
+constexpr const char* kNumbersKey = "isolux.texel_numbers";
+constexpr const char* kAllNumbers = "value slope normal";
+constexpr const char* kWithoutSlope = "value normal";
+
+/// The numbers of a light whose file may say what they are; `a_side` of all channels.
+TexelNumbers texel_numbers(const std::string& path, const KeyValues& pairs, std::size_t a_side) {
+  const auto it = pairs.find(kNumbersKey);
+  if (it == pairs.end()) return {.sloped = a_side == 2 || a_side == 6, .turned = false};
+  if (it->second == kAllNumbers) return {.sloped = true, .turned = true};
+  if (it->second == kWithoutSlope) return {.sloped = false, .turned = true};
+  throw InvalidInput(
+      fmt::format("{}: {} '{}'; allowed are {}, {}", path, kNumbersKey, it->second, kAllNumbers, kWithoutSlope));
+}
+
 /// What the channel axis holds.
 struct ChannelAxis {
   std::size_t numbers = 1;  ///< a texel
@@ -165,20 +181,18 @@ struct ChannelAxis {
 ChannelAxis channel_axis(const std::string& path, const detail::NrrdHeader& header) {
   const std::size_t axes = header.axes.size();
   ChannelAxis axis{.numbers = axes == 4 ? std::size_t(header.axes.front().size) : 1,
-                   .sides = has_both_sides(path, header.key_values) ? 2U : 1U,
-                   .channels = 1,
-                   .of_channel = {}};
+                   .sides = has_both_sides(path, header.key_values) ? 2U : 1U};
   const std::size_t a_side = axis.numbers / axis.sides;
-  axis.channels = a_side % 3 == 0 ? 3 : 1;
-  const std::size_t numbers = a_side / axis.channels;
-  axis.of_channel = {.sloped = numbers == 2 || numbers == 5, .turned = numbers >= 4};
-  const bool known = axis.numbers % axis.sides == 0 && numbers == axis.of_channel.count() &&
-                     (a_side != 1 || axes == 3 || axis.sides == 2);
+  axis.of_channel = texel_numbers(path, header.key_values, a_side);
+  const std::size_t count = axis.of_channel.count();
+  axis.channels = a_side == 3 * count ? 3 : 1;
+  const bool known = axis.numbers == axis.sides * axis.channels * count && (axis.numbers > 1 || axes == 3);
   if ((axes != 3 && axes != 4) || !known) {
-    throw InvalidInput(
-        fmt::format("{}: a light file has 3 axes, or 4 with the first of size {}; this has {}", path,
-                    axis.sides == 2 ? "2, 4, 6, 8, 10, 12, 24 or 30 for both sides" : "2, 3, 4, 5, 6, 12 or 15",
-                    axes == 4 ? fmt::format("4 with {}", axis.numbers) : std::to_string(axes)));
+    const std::size_t least = axis.sides * count;
+    const std::string plain = axis.sides == 2 ? "2, 4, 6 or 12 for both sides" : "2, 3 or 6";
+    throw InvalidInput(fmt::format("{}: a light file has 3 axes, or 4 with the first of size {}; this has {}", path,
+                                   axis.of_channel.turned ? fmt::format("{} or {}", least, 3 * least) : plain,
+                                   axes == 4 ? fmt::format("4 with {}", axis.numbers) : std::to_string(axes)));
   }
   return axis;
 }
@@ -206,6 +220,9 @@ void write_light(const LightFile& light, const std::string& path, const std::str
                           .data_file = {}};
   write_detail(light.grid.detail, LevelSetSide::kOuter, image.key_values);
   image.key_values.erase("isolux.sides");
+  image.key_values.erase(kNumbersKey);
+  if (!light.grid.detail.normal_slopes[0].empty())
+    image.key_values[kNumbersKey] = light.grid.detail.slopes.empty() ? kWithoutSlope : kAllNumbers;
   if (light.inner) {
     write_detail(light.inner->detail, LevelSetSide::kInner, image.key_values);
     image.key_values["isolux.sides"] = "both";

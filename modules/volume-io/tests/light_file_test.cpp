@@ -170,10 +170,30 @@ TEST(LightFile, TellsSidesFromSlopesByItsKey) {
   EXPECT_TRUE(both.grid.detail.slopes.empty());
   EXPECT_EQ(both.inner->values, std::vector<float>{2});
   EXPECT_THAT(test::error_of([&] { (void)read("isolux.sides:=both\n", "3 1 1 1", "abc"); }),
-              HasSubstr("2, 4, 6, 8, 10, 12, 24 or 30 for both sides"));
-  EXPECT_THAT(test::error_of([&] { (void)read("", "9 1 1 1", "abcdefghi"); }), HasSubstr("2, 3, 4, 5, 6, 12 or 15"));
+              HasSubstr("2, 4, 6 or 12 for both sides"));
   EXPECT_THAT(test::error_of([&] { (void)read("isolux.sides:=left\n", "2 1 1 1", "ab"); }),
               HasSubstr("allowed are outer, both"));
+}
+
+// Four or five channels are light only where the file says so: somebody's RGBA picture is none.
+TEST(LightFile, TakesNormalSlopesOnlyByTheirKey) {
+  const test::TemporaryFolder folder;
+  const auto read = [&](const std::string& pairs, const std::string& size, const std::string& data) {
+    return read_light(folder.write("l.nrrd", "NRRD0005\ntype: uint8\ndimension: 4\nsizes: " + size +
+                                                 " 1 1 1\nencoding: raw\n" + pairs + "\n" + data));
+  };
+  const LightFile five = read("isolux.texel_numbers:=value slope normal\n", "5", "\1\2\3\4\5");
+  EXPECT_EQ(five.grid.values, std::vector<float>{1});
+  EXPECT_EQ(five.grid.detail.slopes, std::vector<float>{2});
+  EXPECT_EQ(five.grid.detail.normal_slopes[2], std::vector<float>{5});
+  const LightFile four = read("isolux.texel_numbers:=value normal\n", "4", "\1\2\3\4");
+  EXPECT_TRUE(four.grid.detail.slopes.empty());
+  EXPECT_EQ(four.grid.detail.normal_slopes[0], std::vector<float>{2});
+  EXPECT_THAT(test::error_of([&] { (void)read("", "5", "abcde"); }), HasSubstr("2, 3 or 6"));
+  EXPECT_THAT(test::error_of([&] { (void)read("isolux.texel_numbers:=value normal\n", "5", "abcde"); }),
+              HasSubstr("4 or 12"));
+  EXPECT_THAT(test::error_of([&] { (void)read("isolux.texel_numbers:=value hue\n", "5", "abcde"); }),
+              HasSubstr("allowed are value slope normal, value normal"));
 }
 
 TEST(LightFile, HasTheLayoutThatOtherReadersNeed) {

@@ -57,6 +57,7 @@ class KeptRays {
   Stopwatch since_;
   BakeSettings settings_;
   Lattice texels_;
+  Lattice reflecting_;  ///< the texels that reflections are read from
   std::unique_ptr<const Resampler> resampler_;
   BakeResult begun_;  ///< what the construction found
   std::unique_ptr<LightLinks> links_;

@@ -26,7 +26,8 @@ struct LightWriteOptions {
 
 /// Writes NRRD0005: float32, little endian, 1 channel as 3 axes or 3 channels as 4 with the channel axis first
 /// (`kinds: vector domain domain domain`); a light with slopes has them behind the values on that axis (2 or 6),
-/// and those along the normal's x, y and z behind these (5 or 15; 4 or 12 without slopes over the isovalue); what else
+/// and those along the normal's x, y and z behind these (5 or 15; 4 or 12 without slopes over the isovalue;
+/// `isolux.texel_numbers` says so); what else
 /// its detail holds in `isolux.near_field` (`isolux.own_near_field`: TexelLight) and `isolux.light_ceiling`; a light of
 /// both sides has the inner side's numbers behind all of the outer's (2, 6; 4, 12 with slopes, and so on),
 /// `isolux.sides` = `both`, and `isolux.inner.*` for its detail; `sizes:` before `space:`, metadata as key/value pairs
