@@ -11,6 +11,7 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <glm/common.hpp>
 #include <memory>
 #include <string>
 #include <utility>
@@ -115,15 +116,19 @@ struct Scheme {
   const char* name;
   int channels = 1;
   bool slopes = false;
+  bool fitted = false;  ///< all that a fit says: slopes, normals and near field, of .73 texels a cell and axis
   bool near_field = false;
   bool bricks = false;
 };
 
 IlluminationGrid make_light(const Volume& volume, const Subject& subject, const Scheme& scheme) {
-  IlluminationGrid light(cell_lattice(volume.lattice()), scheme.channels);
+  const double a_cell = scheme.fitted ? 0.73 : 1.0;
+  const Index3 texels(glm::round(a_cell * Vec3(volume.lattice().size - 1)));
+  IlluminationGrid light(cell_lattice(volume.lattice(), texels), scheme.channels);
   for (std::size_t i = 0; i < light.values.size(); ++i) light.values[i] = 0.3f + 0.02f * float(i * 7 % 31);
-  if (scheme.slopes) light.detail.slopes.assign(light.values.size(), 1e-3f);
-  if (scheme.near_field) {
+  if (scheme.slopes || scheme.fitted) light.detail.slopes.assign(light.values.size(), 1e-3f);
+  if (scheme.fitted) light.detail.normal_slopes.fill(std::vector<float>(light.values.size(), 0.1f));
+  if (scheme.near_field || scheme.fitted) {
     light.detail.near_field = {{.step = 1.0f, .mean = 0.9f, .weight = Vec3f(0.2f)},
                                {.step = 2.0f, .mean = 0.8f, .weight = Vec3f(0.1f)}};
   }
@@ -179,9 +184,9 @@ constexpr Scheme kSchemes[] = {{.name = "plain"},
                                {.name = "plain_bricks", .bricks = true},
                                {.name = "slopes", .slopes = true},
                                {.name = "near_field", .near_field = true},
-                               {.name = "fit", .slopes = true, .near_field = true},
-                               {.name = "fit_rgb", .channels = 3, .slopes = true, .near_field = true},
-                               {.name = "fit_bricks", .slopes = true, .near_field = true, .bricks = true}};
+                               {.name = "fit", .fitted = true},
+                               {.name = "fit_rgb", .channels = 3, .fitted = true},
+                               {.name = "fit_bricks", .fitted = true, .bricks = true}};
 
 }  // namespace
 

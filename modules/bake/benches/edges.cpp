@@ -114,6 +114,7 @@ struct Scheme {
   int rays;
   std::string resampler;
   Settings settings;
+  double texels = 1;  ///< a cell and axis
 };
 
 /// What is read less the truth, away from shadows' edges and on them.
@@ -126,7 +127,7 @@ struct Errors {
 };
 
 Errors errors_of(const Subject& subject, const Truth& truth, const Scheme& scheme, std::uint64_t seed) {
-  const Lattice texels = cell_lattice(subject.volume.lattice());
+  const Lattice texels = texels_of(subject.volume, scheme.texels);
   const SiteRequest request{.texels = texels, .per_texel = scheme.sites};
   const auto resampler = resamplers().create(scheme.resampler, scheme.settings);
   const SampleSet samples =
@@ -174,9 +175,13 @@ const int kRegistered = [] {
                                                                                {"two_sheets", two_sheets}};
   const Settings denoise{{"denoise", "true"}};
   const std::vector<std::pair<std::string, Scheme>> schemes{
-      {"texels_16", {"texels", 1, 16, "direct", {}}},   {"texels_16_denoised", {"texels", 1, 16, "direct", denoise}},
-      {"texels_128", {"texels", 1, 128, "direct", {}}}, {"texels_128_denoised", {"texels", 1, 128, "direct", denoise}},
-      {"fit_4x4", {"stratified", 4, 4, "fit", {}}},     {"fit_8x16", {"stratified", 8, 16, "fit", {}}}};
+      {"texels_16", {"texels", 1, 16, "direct", {}}},
+      {"texels_16_denoised", {"texels", 1, 16, "direct", denoise}},
+      {"texels_128", {"texels", 1, 128, "direct", {}}},
+      {"texels_128_denoised", {"texels", 1, 128, "direct", denoise}},
+      {"fit_4x4", {"stratified", 4, 4, "fit", {}}},
+      {"fit_8x16", {"stratified", 8, 16, "fit", {}}},
+      {"fit_8x16_0.73_an_axis", {"stratified", 20.6, 16, "fit", {}, 0.73}}};
   for (const auto& [subject, make] : subjects) {
     for (const auto& [name, scheme] : schemes) {
       benchmark::RegisterBenchmark(("edges/" + subject + "/" + name).c_str(), edges, make, scheme)
