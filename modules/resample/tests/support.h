@@ -5,6 +5,7 @@
 #include <isolux/core/sample_set.h>
 #include <isolux/core/volume.h>
 
+#include <cmath>
 #include <cstdint>
 #include <functional>
 #include <vector>
@@ -26,6 +27,13 @@ inline Volume make_volume(Index3 size, const Vec3& spacing, const std::function<
 
 inline Volume ramp_volume(Index3 size, const Vec3& spacing = Vec3(1.0)) {
   return make_volume(size, spacing, [](const Vec3& p) { return p.x + 0.25 * p.y - 0.5 * p.z; });
+}
+
+/// Waves of some seven voxels and a slope.
+inline Volume wavy_volume() {
+  return make_volume({12, 10, 9}, {1.0, 0.7, 2.0}, [](const Vec3& p) {
+    return std::sin(0.9 * p.x) + 0.8 * std::cos(0.8 * p.y + 0.3 * p.z) + 0.1 * p.z;
+  });
 }
 
 /// One sample: position in index space, everything else plausible.
