@@ -13,15 +13,16 @@ constexpr double kFineSites = 2.0;  // a texel without slopes
 /// Texels a cell and axis of one kind of light.
 struct FitDensity {
   double usual = 1.0;    ///< where the user does not say
-  double normals = 1.0;  ///< the most with slopes along the normal: finer ones tell surfaces' sides apart themselves
+  double normals = 1.0;  ///< the most with slopes along the normal: finer ones want the memory for themselves
   double slopes = 1.0;   ///< the most with slopes over the isovalue, likewise
 };
-// All isovalues: two numbers a voxel, five a texel; the most are eight numbers a voxel.
-constexpr FitDensity kSweep{.usual = 0.73, .normals = 1.18, .slopes = 1.6};
+// All isovalues: two numbers a voxel, five a texel; 1.58 texels without normals are eight a voxel, and the best of
+// them.
+constexpr FitDensity kSweep{.usual = 0.73, .normals = 1.4, .slopes = 1.6};
 // Known isovalues: bricks of one number a voxel of the whole volume, of a single one (which says nothing of slopes over
 // the isovalue) and of a tenth of all.
-constexpr FitDensity kOneIsovalue{.usual = 0.97, .normals = 1.1, .slopes = 0.0};
-constexpr FitDensity kRange{.usual = 0.8, .normals = 0.9, .slopes = 1.15};
+constexpr FitDensity kOneIsovalue{.usual = 0.97, .normals = 1.5, .slopes = 0.0};
+constexpr FitDensity kRange{.usual = 0.8, .normals = 1.15, .slopes = 1.15};
 constexpr double kKnownSites = 16.0;             // a crossed cell
 constexpr const char* kWeakSlopePrior = "0.01";  // where sites a cell are many
 /// A cell that a level set only just cuts may get no site; its texels are next to lit ones.

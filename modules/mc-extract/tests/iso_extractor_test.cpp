@@ -176,19 +176,6 @@ TEST(IsoExtractor, BothMeshesAreOne) {
   }
 }
 
-/// Calls body for each instruction set that this machine has.
-template <class Body>
-void on_every_instruction_set(const Body& body) {
-  std::int64_t targets = hwy::SupportedTargets();
-  for (; targets != 0; targets &= targets - 1) {
-    const std::int64_t target = targets & -targets;
-    hwy::SetSupportedTargetsForTest(target);
-    SCOPED_TRACE(target);
-    body();
-  }
-  hwy::SetSupportedTargetsForTest(0);
-}
-
 TEST(IsoExtractor, GivesTheSameBitsOnEveryInstructionSet) {
   // Rows of less and of more than a word, and of several vectors' words.
   for (const Volume& volume :
