@@ -20,8 +20,8 @@ namespace isolux {
 namespace {
 
 /// Few, as each takes passes over the volume; so many that a part's sites take less than a byte a texel of them all.
-constexpr std::size_t kMostParts = 32;
-constexpr std::size_t kTexelsAPart = std::size_t(1) << 19;
+constexpr std::size_t kMostParts = 64;
+constexpr std::size_t kTexelsAPart = std::size_t(1) << 17;
 
 std::size_t part_count(const BakeSettings& settings, const Lattice& texels) {
   if (settings.isovalue_parts > 0) return std::size_t(settings.isovalue_parts);
@@ -36,6 +36,7 @@ class PartBaker {
         scene_(scene),
         settings_(settings),
         run_(run),
+        values_(value_range(volume)),
         texels_(texel_lattice(volume.lattice(), settings)),
         sampler_(stages.samplers.create(settings.sampler.name, settings.sampler.settings)),
         tracer_(stages.tracers.create(settings.tracer.name, settings.tracer.settings)),
@@ -64,6 +65,7 @@ class PartBaker {
     const Stopwatch finding;
     SiteRequest request = site_request(settings_, texels_, scene_.outer);
     request.isovalues = isovalues;
+    request.values = values_;
     Sites sites = sampler_->sample(volume_, request, run);
     result_.seconds["sites"] += finding.seconds();
     if (sites.size() == 0) return;
@@ -71,6 +73,7 @@ class PartBaker {
     const Stopwatch tracing;
     TraceSettings trace = settings_.trace;
     trace.nets = RayNets::kInterleaved;
+    trace.values = values_;
     last_ = {};
     TraceResult traced = tracer_->trace(volume_, scene_, std::move(sites), trace, run);
     result_.seconds["trace"] += tracing.seconds();
@@ -98,6 +101,7 @@ class PartBaker {
   const Scene& scene_;
   const BakeSettings& settings_;
   const Run& run_;
+  ValueRange values_;  ///< of the volume
   Lattice texels_;
   std::unique_ptr<const SiteSampler> sampler_;
   std::unique_ptr<const FlatTracer> tracer_;

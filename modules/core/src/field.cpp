@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <iterator>
 
 namespace isolux {
 
@@ -135,12 +136,22 @@ Vec3 TrilinearFieldOf<Value>::world_gradient(const Vec3& index, GradientKind kin
 }
 
 template <class Value>
-Vec3 TrilinearFieldOf<Value>::normal(const Vec3& index, OuterSide outer, GradientKind kind) const {
-  const Vec3 g = kind == GradientKind::kCell ? cell_gradient(index) : smooth_gradient(index);
+ValueRange TrilinearFieldOf<Value>::corner_range(const Vec3& index) const {
   double v[8];
   place(index).load(v);
-  double magnitude = 0.0;
-  for (const double x : v) magnitude = std::max(magnitude, std::fabs(x));
+  const auto [least, largest] = std::minmax_element(std::begin(v), std::end(v));
+  return {.low = float(*least), .high = float(*largest)};
+}
+
+template <class Value>
+Vec3 TrilinearFieldOf<Value>::normal(const Vec3& index, OuterSide outer, GradientKind kind) const {
+  const Vec3 g = kind == GradientKind::kCell ? cell_gradient(index) : smooth_gradient(index);
+  const ValueRange corners = corner_range(index);
+  return normal_of(g, std::max(std::fabs(double(corners.low)), std::fabs(double(corners.high))), outer);
+}
+
+template <class Value>
+Vec3 TrilinearFieldOf<Value>::normal_of(const Vec3& g, double magnitude, OuterSide outer) const {
   // Normalised before the squares of glm::length can under- or overflow.
   const double largest = std::max({std::fabs(g.x), std::fabs(g.y), std::fabs(g.z)});
   if (!(largest > 1e-7 * magnitude)) return Vec3(0.0);

@@ -33,7 +33,8 @@ TraceCounters gather(const Volume& volume, const Sites& sites, const GatherSetti
   const wide::BlockRequest request{.outer = settings.outer,
                                    .rays_per_site = aimer.rays(),
                                    .sites_per_block = wide::sites_per_batch(aimer.rays()),
-                                   .proofs = settings.question == RayQuestion::kAnyHit};
+                                   .proofs = settings.question == RayQuestion::kAnyHit,
+                                   .values = settings.values};
   const auto question = settings.question == RayQuestion::kAnyHit ? wide::Question::kAnyHit : wide::Question::kFirstHit;
   TraceCounters total;
   std::mutex adding;

@@ -30,8 +30,11 @@ TraceCounters add_sky_light(const Volume& volume, const Scene& scene, const Trac
   if (is_dark(scene)) return {};
   const LinkRound round{.first = 0, .rays = rays, .order = mean.order(), .blocks = {}};
   const RayValues brought(scene, {.channels = std::size_t(samples.channels)});
-  const GatherSettings request{
-      .rays = settings.rays, .outer = scene.outer, .question = RayQuestion::kAnyHit, .nets = settings.nets};
+  const GatherSettings request{.rays = settings.rays,
+                               .outer = scene.outer,
+                               .question = RayQuestion::kAnyHit,
+                               .nets = settings.nets,
+                               .values = settings.values};
   return gather(volume, samples.sites, request, run, [&](const GatheredRays& gathered) {
     static thread_local LinkBlock block;
     RayValues::Scratch scratch(rays);

@@ -9,6 +9,7 @@
 
 #include "physics_support.h"
 #include "wide/occupancy.h"
+#include "wide_targets.h"
 
 namespace isolux::test {
 namespace {
@@ -70,25 +71,22 @@ void expect_cells_of_all_levels(const Index3& size, OuterSide outer) {
   }
 }
 
-TEST(CellCodes, SayOfEachCellWhichThresholdsItsLargestValueReaches) {
+class CellCodes : public testing::TestWithParam<std::int64_t> {
+ protected:
+  CellCodes() { choose_target(GetParam()); }
+  ~CellCodes() override { choose_target(0); }
+};
+
+TEST_P(CellCodes, SayOfEachCellWhichThresholdsItsLargestValueReaches) {
   for (const OuterSide outer : {OuterSide::kLower, OuterSide::kHigher}) {
     expect_cells_of_all_levels({23, 9, 12}, outer);  // bricks that stick out of the volume
     expect_cells_of_all_levels({70, 6, 17}, outer);
+    expect_cells_of_all_levels({33, 5, 4}, outer);  // cells fill vectors
+    expect_cells_of_all_levels({3, 4, 2}, outer);   // fewer than a brick
   }
 }
 
-TEST(RankValues, CountsThresholdsReachedTheValueItselfToo) {
-  // More values than any vector has lanes, and some over.
-  std::vector<float> values;
-  for (int i = 0; i < 77; ++i) values.push_back(0.25f * float(i % 11));
-  const std::vector<float> thresholds{0.0f, 0.25f, 0.3f, 1.0f, 2.5f};
-  std::vector<std::uint8_t> ranks(values.size());
-  wide::rank_values(values, thresholds, ranks);
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    const auto reached = std::count_if(thresholds.begin(), thresholds.end(), [&](float t) { return values[i] >= t; });
-    EXPECT_EQ(std::ptrdiff_t(ranks[i]), reached) << values[i];
-  }
-}
+INSTANTIATE_TEST_SUITE_P(AllTargets, CellCodes, testing::ValuesIn(wide_targets()), wide_target_name);
 
 }  // namespace
 }  // namespace isolux::test

@@ -8,13 +8,17 @@
 namespace isolux {
 
 NearField::NearField(const Volume& volume)
-    : field_(volume), world_to_index_(glm::inverse(volume.lattice().frame.axes)) {
+    : field_(volume),
+      gradient_to_world_(volume.lattice().frame.gradient_to_world()),
+      world_to_index_(glm::inverse(volume.lattice().frame.axes)) {
   const Vec3 spacing = volume.lattice().frame.spacing();
   spacing_ = std::cbrt(spacing.x * spacing.y * spacing.z);
 }
 
-NearField::Ahead NearField::ahead(const Vec3& index) const {
-  const Vec3 gradient = field_.world_gradient(index, GradientKind::kCentralDifferences);
+NearField::Ahead NearField::ahead(const Vec3& index) const { return ahead_of(field_.smooth_gradient(index)); }
+
+NearField::Ahead NearField::ahead_of(const Vec3& gradient_here) const {
+  const Vec3 gradient = gradient_to_world_ * gradient_here;
   const double steepness = glm::length(gradient);
   if (!(steepness > 0.0)) return {};
   return {.step = world_to_index_ * (gradient * (-spacing_ / steepness)),
@@ -24,7 +28,10 @@ NearField::Ahead NearField::ahead(const Vec3& index) const {
 
 float NearField::openness(const Vec3& index, const Ahead& ahead, double isovalue, double step) const {
   if (!(ahead.fall > 0.0)) return 0.0f;
-  const double there = field_.value(index + step * ahead.step);
+  return openness_of(field_.value(index + step * ahead.step), ahead, isovalue, step);
+}
+
+float NearField::openness_of(double there, const Ahead& ahead, double isovalue, double step) {
   return float(std::clamp((isovalue - there) / (ahead.fall * step), -1.0, 1.0));
 }
 

@@ -21,14 +21,19 @@ class NearField {
     double fall = 0.0;   ///< 0 where there is no gradient
   };
   [[nodiscard]] Ahead ahead(const Vec3& index) const;
+  /// The same of a gradient in index space (interpolated central differences).
+  [[nodiscard]] Ahead ahead_of(const Vec3& gradient) const;
   /// -1 (closed) to 1 (open) at a point of index space; 0 where there is no gradient. `step` as in NearFieldTerm.
   [[nodiscard]] float openness(const Vec3& index, const Ahead& ahead, double isovalue, double step) const;
+  /// The same where f `there`, at index + step * ahead.step, is known. \pre ahead.fall > 0
+  [[nodiscard]] static float openness_of(double there, const Ahead& ahead, double isovalue, double step);
   /// The sign of steps towards the outer side: the sites' normals know which that is.
   [[nodiscard]] double outwards(const Sites& sites) const;
   [[nodiscard]] const TrilinearField& field() const { return field_; }
 
  private:
   TrilinearField field_;
+  Mat3 gradient_to_world_;
   Mat3 world_to_index_;
   double spacing_;  ///< geometric mean, world units
 };

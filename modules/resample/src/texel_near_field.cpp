@@ -9,10 +9,12 @@
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
+#include <numeric>
 #include <optional>
 #include <vector>
 
 #include "near_field.h"
+#include "texel_row.h"
 
 namespace isolux {
 namespace {
@@ -32,44 +34,6 @@ constexpr double kMostOfLight = 2.0;
 /// Of the moments' diagonal, added to it: openness at several steps may be all alike.
 constexpr double kRidge = 1e-6;
 
-/// What the volume says of a texel.
-struct TexelPlace {
-  Vec3 index;
-  NearField::Ahead ahead;
-  double isovalue = 0.0;
-};
-
-class TexelPlaces {
- public:
-  TexelPlaces(const NearField& near_field, const Lattice& texels)
-      : near_field_(near_field), to_volume_(index_to_index(texels, near_field.field().lattice())) {}
-
-  [[nodiscard]] TexelPlace at(int i, int j, int k) const {
-    TexelPlace place;
-    place.index = Vec3(Vec3f(to_volume_.world(Vec3(i, j, k))));  // rounded as sites are
-    place.isovalue = near_field_.field().value(place.index);
-    place.ahead = near_field_.ahead(place.index);
-    return place;
-  }
-
- private:
-  const NearField& near_field_;
-  IndexToWorld to_volume_;
-};
-
-/// Calls visit(texel, i, j, k) for all texels, layers in parallel.
-template <class Visit>
-void for_each_texel(const Lattice& texels, const Run& run, const Visit& visit) {
-  const Index3& size = texels.size;
-  parallel_blocks(std::size_t(size.z) * std::size_t(size.y), 8, run, "", [&](const Block& block) {
-    for (std::size_t row = block.begin; row < block.end; ++row) {
-      const int j = int(row % std::size_t(size.y));
-      const int k = int(row / std::size_t(size.y));
-      for (int i = 0; i < size.x; ++i) visit(texels.offset(i, j, k), i, j, k);
-    }
-  });
-}
-
 /// A texel's openness at each step and its weight: level sets count by their area (the coarea formula), but less so
 /// than that, since a single value of a steep place says little of the others; 0 if unlit.
 struct Measured {
@@ -81,11 +45,10 @@ struct Measured {
 class MeasuredLayers {
  public:
   MeasuredLayers(const NearField& near_field, double outwards, const ResampledGrid& texels)
-      : near_field_(near_field),
-        outwards_(outwards),
+      : outwards_(outwards),
         texels_(texels),
-        places_(near_field, texels.grid.lattice),
-        layer_(std::size_t(texels.grid.lattice.size.x) * std::size_t(texels.grid.lattice.size.y)) {}
+        layer_(std::size_t(texels.grid.lattice.size.x) * std::size_t(texels.grid.lattice.size.y)),
+        row_(near_field, texels.grid.lattice) {}
 
   /// Layer k, by the texel's number within it. Good until layer k + 3.
   [[nodiscard]] const std::vector<Measured>& at(int k) {
@@ -100,28 +63,32 @@ class MeasuredLayers {
     std::vector<Measured> measured;
   };
 
-  void measure(int k, Kept& kept) const {
+  void measure(int k, Kept& kept) {
     const Index3& size = texels_.grid.lattice.size;
     kept.k = k;
     kept.measured.assign(layer_, {});
-    std::size_t n = 0;
     for (int j = 0; j < size.y; ++j) {
-      for (int i = 0; i < size.x; ++i, ++n) {
-        if (texels_.lit[std::size_t(k) * layer_ + n] == 0) continue;
-        const TexelPlace place = places_.at(i, j, k);
-        Measured& of = kept.measured[n];
-        for (int s = 0; s < 3; ++s)
-          of.openness[s] = near_field_.openness(place.index, place.ahead, place.isovalue, outwards_ * kSteps[s]);
-        of.weight = float(std::sqrt(place.ahead.fall));
+      const std::size_t row = std::size_t(j) * std::size_t(size.x);
+      const std::uint8_t* const lit = texels_.lit.data() + std::size_t(k) * layer_ + row;
+      columns_.clear();
+      for (int i = 0; i < size.x; ++i)
+        if (lit[i] != 0) columns_.push_back(i);
+      row_.look(j, k, columns_);
+      for (std::size_t n = 0; n < columns_.size(); ++n)
+        kept.measured[row + std::size_t(columns_[n])].weight = float(std::sqrt(row_.ahead(n).fall));
+      for (int s = 0; s < 3; ++s) {
+        row_.find_openness(outwards_ * kSteps[std::size_t(s)]);
+        for (std::size_t n = 0; n < columns_.size(); ++n)
+          kept.measured[row + std::size_t(columns_[n])].openness[s] = row_.openness(n);
       }
     }
   }
 
-  const NearField& near_field_;
   double outwards_;
   const ResampledGrid& texels_;
-  TexelPlaces places_;
   std::size_t layer_;
+  TexelRow row_;
+  std::vector<int> columns_;
   std::array<Kept, 3> kept_;
 };
 
@@ -266,22 +233,33 @@ void estimate_near_field(const Volume& volume, double outwards, ResampledGrid& t
 
 void take_off_near_field(const Volume& volume, IlluminationGrid& light, const Run& run) {
   const NearField near_field(volume);
-  const TexelPlaces places(near_field, light.lattice);
+  const Index3& size = light.lattice.size;
   const std::optional<ValueRange>& lit = light.detail.isovalues;
   const auto channels = std::size_t(light.channels);
-  for_each_texel(light.lattice, run, [&](std::size_t t, int i, int j, int k) {
-    const TexelPlace place = places.at(i, j, k);
-    const auto isovalue = float(place.isovalue);
-    if ((lit && !(isovalue >= lit->low && isovalue <= lit->high)) || near_field.field().is_flat_around(place.index))
-      return;
-    Vec3 sum(0.0);
-    for (const NearFieldTerm& term : light.detail.near_field) {
-      const float openness = near_field.openness(place.index, place.ahead, place.isovalue, double(term.step));
-      sum += Vec3(term.weight) * double(openness - term.mean);
-    }
-    for (std::size_t c = 0; c < channels; ++c) {
-      float& value = light.values[t * channels + c];
-      value = float(double(value) - sum[int(c)]);
+  parallel_blocks(std::size_t(size.z) * std::size_t(size.y), 8, run, "", [&](const Block& block) {
+    TexelRow row(near_field, light.lattice);
+    std::vector<int> columns(static_cast<std::size_t>(size.x));
+    std::vector<Vec3> sums;
+    for (std::size_t r = block.begin; r < block.end; ++r) {
+      const int j = int(r % std::size_t(size.y));
+      const int k = int(r / std::size_t(size.y));
+      columns.resize(std::size_t(size.x));
+      std::iota(columns.begin(), columns.end(), 0);
+      row.look(j, k, columns);
+      row.keep_lit(lit, columns);
+      sums.assign(columns.size(), Vec3(0.0));
+      for (const NearFieldTerm& term : light.detail.near_field) {
+        row.find_openness(double(term.step));
+        for (std::size_t n = 0; n < columns.size(); ++n)
+          sums[n] += Vec3(term.weight) * double(row.openness(n) - term.mean);
+      }
+      for (std::size_t n = 0; n < columns.size(); ++n) {
+        const std::size_t t = light.lattice.offset(columns[n], j, k);
+        for (std::size_t c = 0; c < channels; ++c) {
+          float& value = light.values[t * channels + c];
+          value = float(double(value) - sums[n][int(c)]);
+        }
+      }
     }
   });
   light.detail.texel_light = TexelLight::kReduced;

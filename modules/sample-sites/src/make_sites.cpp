@@ -3,7 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <optional>
+#include <span>
 #include <utility>
 
 #include "site_maker.h"
@@ -22,14 +22,14 @@ Sites make_sites(const Volume& volume, std::vector<Vec3f> positions, const SiteR
   sites.normals.resize(positions.size());
   std::vector<std::uint8_t> kept(positions.size(), 0);
   parallel_blocks(positions.size(), kSitesABlock, run, {}, [&](const Block& block) {
-    for (std::size_t i = block.begin; i < block.end; ++i) {
-      const std::optional<Site> site = maker.at(positions[i]);
-      if (!site) continue;
-      positions[i] = site->position;
-      sites.isovalues[i] = site->isovalue;
-      sites.normals[i] = site->normal;
+    const auto some = std::span(positions).subspan(block.begin, block.end - block.begin);
+    maker.make(some, [&](std::size_t number, const Site& site) {
+      const std::size_t i = block.begin + number;
+      positions[i] = site.position;
+      sites.isovalues[i] = site.isovalue;
+      sites.normals[i] = site.normal;
       kept[i] = 1;
-    }
+    });
   });
 
   std::size_t count = 0;

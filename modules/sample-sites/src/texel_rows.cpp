@@ -7,8 +7,8 @@
 
 namespace isolux {
 
-TexelRows::TexelRows(const Volume& volume, const Lattice& texels)
-    : volume_(volume), texels_(texels.size), to_volume_(index_to_index(texels, volume.lattice())) {
+TexelRows::TexelRows(const Volume& volume, const SiteRequest& request)
+    : volume_(volume), texels_(request.texels.size), to_volume_(index_to_index(request.texels, volume.lattice())) {
   // Off the axes there is rounding alone, or the lattice is another one.
   constexpr double kRounding = 1e-9;
   for (int a = 0; a < 3; ++a)
@@ -22,7 +22,8 @@ TexelRows::TexelRows(const Volume& volume, const Lattice& texels)
     is_one_a_cell_ = is_one_a_cell_ && at.first == x;
   }
   // Places are floats: off by up to 2^-24 of an axis, over which f changes by that part of its range a grid step.
-  const ValueRange all = value_range(volume);
+  if (!request.isovalues) return;
+  const ValueRange all = request.values ? *request.values : value_range(volume);
   const Index3& size = volume.lattice().size;
   const float place = 0x1p-21f * float(std::max({size.x, size.y, size.z}));
   margin_ = place * (all.high - all.low) + 0x1p-20f * std::max(std::abs(all.low), std::abs(all.high));

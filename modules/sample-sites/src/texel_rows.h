@@ -1,7 +1,6 @@
 #pragma once
 
-#include <isolux/core/lattice.h>
-#include <isolux/core/volume.h>
+#include <isolux/sample_sites/site_sampler.h>
 
 #include <cstddef>
 #include <cstdint>
@@ -13,7 +12,7 @@ namespace isolux {
 /// The centres of a lattice's texels, row by row along x. Immutable; the volume outlives it.
 class TexelRows {
  public:
-  TexelRows(const Volume& volume, const Lattice& texels);
+  TexelRows(const Volume& volume, const SiteRequest& request);
 
   [[nodiscard]] std::size_t count() const { return std::size_t(texels_.y) * std::size_t(texels_.z); }
   /// The centre of texel x of a row, in the volume's index space, as a site has it.

@@ -15,20 +15,6 @@ constexpr int kLeapOfCode[8] = {1, 2, 3, 4, 6, 8, 10, 12};
 
 Index3 brick_count(Index3 points) { return (points - 1 + (kBrick - 1)) / kBrick; }
 
-/// Largest values of the cells of row (j, k), signed so that the inner side is the higher one. `largest` has room for
-/// the row's grid points.
-void row_maxima(const FieldView& field, int j, int k, std::vector<float>& largest) {
-  const auto nx = std::size_t(field.size.x);
-  const auto ny = std::size_t(field.size.y);
-  const float sign = field.outer == OuterSide::kLower ? 1.0f : -1.0f;
-  const float* row = field.values + (std::size_t(k) * ny + std::size_t(j)) * nx;
-  const float* above = row + nx * ny;
-  for (std::size_t i = 0; i < nx; ++i) {
-    largest[i] = std::max(std::max(sign * row[i], sign * row[nx + i]), std::max(sign * above[i], sign * above[nx + i]));
-  }
-  for (std::size_t i = 0; i + 1 < nx; ++i) largest[i] = std::max(largest[i], largest[i + 1]);
-}
-
 /// Eight bits to eight bytes of 0 or 1, the lowest bit to the lowest address.
 std::array<std::uint64_t, 256> make_spread() {
   std::array<std::uint64_t, 256> table{};
@@ -91,27 +77,9 @@ void CellCodes::build(std::span<const float> thresholds, const Run& run) {
   const std::size_t row = std::size_t(bricks_.x) * kBrickBytes;
   const std::size_t layer = row * std::size_t(bricks_.y);
   parallel_blocks(std::size_t(bricks_.z), 1, run, "", [&](const Block& block) {
-    std::vector<float> largest(std::size_t(field_.size.x));
-    std::vector<std::uint8_t> ranks(std::size_t(bricks_.x * kBrick));  // those beyond the last cell stay 0
-    const std::size_t cells = largest.size() - 1;
-    std::fill_n(codes_.begin() + std::ptrdiff_t(block.begin * layer), layer, std::uint8_t(0));
-    const int first = int(block.begin) * kBrick;
-    for (int k = first; k < std::min(first + kBrick, field_.size.z - 1); ++k) {
-      for (int j = 0; j + 1 < field_.size.y; ++j) {
-        row_maxima(field_, j, k, largest);
-        rank_values(std::span(largest).first(cells), thresholds, std::span(ranks).first(cells));
-        const int half = k % kBrick / 2;
-        std::uint8_t* out = codes_.data() + block.begin * layer + std::size_t(j / kBrick) * row +
-                            std::size_t(k % 2 * 16 + j % kBrick * 4);
-        for (std::size_t b = 0; b < std::size_t(bricks_.x); ++b) {
-          std::uint32_t four = 0;
-          std::uint32_t other = 0;
-          std::memcpy(&four, &ranks[b * kBrick], 4);
-          std::memcpy(&other, out + b * kBrickBytes, 4);
-          other |= four << (4 * half);  // ranks are below 16, so nothing is carried
-          std::memcpy(out + b * kBrickBytes, &other, 4);
-        }
-      }
+    for (int y = 0; y < bricks_.y; ++y) {
+      const Index3 first(0, y * kBrick, int(block.begin) * kBrick);
+      code_brick_row(field_, first, thresholds, codes_.data() + block.begin * layer + std::size_t(y) * row);
     }
   });
 }

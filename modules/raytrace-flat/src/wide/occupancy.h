@@ -63,7 +63,8 @@ class Occupancy {
 void pack_bits(std::span<const std::uint8_t> codes, std::uint8_t index, std::uint32_t* out);
 /// The same of codes of half a byte, 32 bytes at a time: bits of their lower halves, then of their upper ones.
 void pack_half_bits(std::span<const std::uint8_t> codes, std::uint8_t index, std::uint32_t* out);
-/// How many of the thresholds each value reaches. \pre at most 255; as many ranks as values
-void rank_values(std::span<const float> values, std::span<const float> thresholds, std::span<std::uint8_t> ranks);
+/// The codes of a row of bricks along x, whose first cell is `first`. \pre at most CellCodes::kMaxThresholds
+void code_brick_row(const FieldView& field, const Index3& first, std::span<const float> thresholds,
+                    std::uint8_t* codes);
 
 }  // namespace isolux::wide

@@ -64,26 +64,6 @@ void pack_halves(std::span<const std::uint8_t> codes, std::uint8_t index, std::u
   }
 }
 
-void rank(std::span<const float> values, std::span<const float> thresholds, std::span<std::uint8_t> ranks) {
-  const hn::ScalableTag<float> d;
-  const hn::RebindToSigned<decltype(d)> di;
-  const hn::Rebind<std::uint8_t, decltype(d)> bytes;
-  const std::size_t lanes = hn::Lanes(d);
-  std::size_t i = 0;
-  for (; i + lanes <= values.size(); i += lanes) {
-    const auto value = hn::LoadU(d, values.data() + i);
-    auto count = hn::Zero(di);
-    for (const float threshold : thresholds)  // a mask's lanes are -1
-      count = hn::Sub(count, hn::VecFromMask(di, hn::RebindMask(di, hn::Ge(value, hn::Set(d, threshold)))));
-    hn::StoreU(hn::DemoteTo(bytes, count), bytes, ranks.data() + i);
-  }
-  for (; i < values.size(); ++i) {
-    std::size_t count = 0;
-    for (const float threshold : thresholds) count += std::size_t(values[i] >= threshold);
-    ranks[i] = std::uint8_t(count);
-  }
-}
-
 }  // namespace HWY_NAMESPACE
 }  // namespace isolux::wide
 HWY_AFTER_NAMESPACE();
@@ -93,7 +73,6 @@ namespace isolux::wide {
 
 HWY_EXPORT(pack);
 HWY_EXPORT(pack_halves);
-HWY_EXPORT(rank);
 
 void pack_bits(std::span<const std::uint8_t> codes, std::uint8_t index, std::uint32_t* out) {
   HWY_DYNAMIC_DISPATCH(pack)(codes, index, out);
@@ -101,10 +80,6 @@ void pack_bits(std::span<const std::uint8_t> codes, std::uint8_t index, std::uin
 
 void pack_half_bits(std::span<const std::uint8_t> codes, std::uint8_t index, std::uint32_t* out) {
   HWY_DYNAMIC_DISPATCH(pack_halves)(codes, index, out);
-}
-
-void rank_values(std::span<const float> values, std::span<const float> thresholds, std::span<std::uint8_t> ranks) {
-  HWY_DYNAMIC_DISPATCH(rank)(values, thresholds, ranks);
 }
 
 }  // namespace isolux::wide

@@ -83,8 +83,8 @@ bool has_proofs(const Volume& volume, const Sites& sites, const BlockRequest& re
 
 /// Rising thresholds that share the sites out evenly; the first is below all of them.
 std::vector<float> choose_thresholds(const Sites& sites, OuterSide outer, std::size_t buckets) {
-  constexpr std::size_t kSample = 65536;
-  const std::size_t step = std::max<std::size_t>(1, sites.size() / kSample);
+  const std::size_t enough = std::max<std::size_t>(256 * buckets, 4096);
+  const std::size_t step = std::max<std::size_t>(1, sites.size() / enough);
   std::vector<float> sample;
   float least = std::numeric_limits<float>::infinity();
   for (std::size_t i = 0; i < sites.size(); ++i) {
@@ -112,7 +112,7 @@ struct BucketLevels {
       : least(choose_thresholds(sites, request.outer, bucket_count(volume, sites, request))) {
     // Positions found by tracing are off their level set by a rounding, which must not cost them their bucket; and
     // whether a value is beyond an isovalue is to be no matter of rounding.
-    const ValueRange range = value_range(volume);
+    const ValueRange range = request.values ? *request.values : value_range(volume);
     const float margin = 1e-4f * (range.high - range.low);
     const float rounding = 0x1p-20f * std::max(std::abs(range.low), std::abs(range.high));
     for (const float value : least) thresholds.push_back(value - margin);

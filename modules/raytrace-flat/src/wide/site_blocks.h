@@ -6,6 +6,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <span>
 #include <string_view>
 
@@ -30,9 +31,10 @@ struct SiteBlock {
 
 struct BlockRequest {
   OuterSide outer = OuterSide::kLower;
-  std::size_t rays_per_site = 64;     ///< expected; decides how finely isovalues are told apart
-  std::size_t sites_per_block = 128;  ///< at most
-  bool proofs = true;                 ///< SiteBlock::inner is wanted, where it pays
+  std::size_t rays_per_site = 64;      ///< expected; decides how finely isovalues are told apart
+  std::size_t sites_per_block = 128;   ///< at most
+  bool proofs = true;                  ///< SiteBlock::inner is wanted, where it pays
+  std::optional<ValueRange> values{};  ///< of the volume, where known: saves a pass
 };
 
 /// Calls body for blocks that hold every site once, on run.threads threads. Sites are taken bucket by bucket of

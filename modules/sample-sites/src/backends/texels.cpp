@@ -17,6 +17,7 @@ namespace {
 /// stay.
 constexpr std::size_t kSlabs = 8;
 constexpr std::size_t kRowsABlock = 64;
+constexpr std::size_t kPositionsAtOnce = 1024;
 
 /// One site at the centre of every texel, in the texels' order.
 class TexelSampler final : public SiteSampler {
@@ -25,7 +26,7 @@ class TexelSampler final : public SiteSampler {
   explicit TexelSampler(const Options& /*options*/) {}
 
   [[nodiscard]] Sites sample(const Volume& volume, const SiteRequest& request, const Run& run) const override {
-    const TexelRows rows(volume, request.texels);
+    const TexelRows rows(volume, request);
     const SiteMaker maker(volume, request);
     const std::size_t slab = std::max(kRowsABlock, rows.count() / kSlabs);
     SitePieces pieces;
@@ -45,14 +46,18 @@ class TexelSampler final : public SiteSampler {
   static void append_rows(const TexelRows& rows, std::size_t begin, std::size_t end, const SiteRequest& request,
                           const SiteMaker& maker, Sites& sites) {
     TexelRows::Scratch scratch;
+    std::vector<Vec3f> positions;
     for (std::size_t row = begin; row < end; ++row) {
       if (request.isovalues) {
         // Of a range most texels may lie outside: they cost no more than a look at their isovalue.
         for (const int x : rows.columns_within(row, *request.isovalues, scratch))
-          maker.append(rows.position(row, x), sites);
+          positions.push_back(rows.position(row, x));
       } else {
-        for (int x = 0; x < request.texels.size.x; ++x) maker.append(rows.position(row, x), sites);
+        for (int x = 0; x < request.texels.size.x; ++x) positions.push_back(rows.position(row, x));
       }
+      if (positions.size() < kPositionsAtOnce && row + 1 < end) continue;
+      maker.append(positions, sites);
+      positions.clear();
     }
   }
 };

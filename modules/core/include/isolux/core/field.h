@@ -43,6 +43,10 @@ class TrilinearFieldOf {
   /// The unit normal towards the outer side in world space, or (0,0,0) where there is none: a gradient per index step
   /// of at most 1e-7 of the largest value around is rounding noise of flat data.
   [[nodiscard]] Vec3 normal(const Vec3& index, OuterSide outer, GradientKind kind) const;
+  /// The same of a gradient (index space) that is known, where `magnitude` is the largest absolute value around.
+  [[nodiscard]] Vec3 normal_of(const Vec3& gradient, double magnitude, OuterSide outer) const;
+  /// Smallest and largest value at the corners of the cell that holds the point.
+  [[nodiscard]] ValueRange corner_range(const Vec3& index) const;
   /// True if f is constant in every cell that touches the point: its level set there is a solid, not a surface.
   [[nodiscard]] bool is_flat_around(const Vec3& index) const;
   /// Central difference at a grid point along one axis (one-sided on the faces), per index step.

@@ -3,10 +3,12 @@
 #include <isolux/core/registry.h>
 #include <isolux/core/run.h>
 #include <isolux/core/sample_set.h>
+#include <isolux/core/volume.h>
 #include <isolux/raytrace_flat/scene.h>
 #include <isolux/raytrace_flat/trace_counters.h>
 
 #include <cstdint>
+#include <optional>
 
 namespace isolux {
 
@@ -24,6 +26,7 @@ struct TraceSettings {
   int bounces = kAllBounces;  ///< reflections; 0: a hit is black unless it emits
   GradientKind gradient = GradientKind::kCentralDifferences;
   RayNets nets = RayNets::kIndependent;  ///< of the first rays; `scalar` keeps them independent
+  std::optional<ValueRange> values{};    ///< of the volume, where known: saves `wide` a pass
   LampLight lamps = LampLight::kWithin;  ///< told apart, the whole is the same to the bit; `scalar` leaves it within
 };
 

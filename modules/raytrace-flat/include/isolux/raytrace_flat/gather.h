@@ -10,6 +10,7 @@
 #include <cstdint>
 #include <functional>
 #include <limits>
+#include <optional>
 #include <span>
 
 namespace isolux {
@@ -28,6 +29,7 @@ struct GatherSettings {
   int first_ray = 0;                      ///< rays [first_ray, first_ray + rays) of each site's sequence
   std::span<const std::uint32_t> keys{};  ///< what random numbers are keyed by, one a site; empty: the site's number
   RayNets nets = RayNets::kIndependent;
+  std::optional<ValueRange> values{};  ///< of the volume, where known: saves a pass
 };
 
 /// The rays of some sites and what they met, as a gather hands them over. Ray k of sites[i] is number i * rays + k of

@@ -15,6 +15,7 @@ struct SiteRequest {
   std::size_t count = 0;                  ///< sites wanted; 0: per_texel. Samplers that sit at texels ignore both
   double per_texel = 1.0;                 ///< sites a texel of what can be lit
   std::optional<ValueRange> isovalues{};  ///< sites only on level sets within
+  std::optional<ValueRange> values{};     ///< of the whole volume, where known: saves a pass
   OuterSide outer = OuterSide::kLower;
   GradientKind gradient = GradientKind::kCentralDifferences;
 };
