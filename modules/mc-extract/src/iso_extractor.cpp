@@ -35,14 +35,25 @@ class IsoExtractor::Implementation {
     const mc::MeshSize size = march_.count(settings, run, index(), mc::vertex_room(mesh));
     const mc::MeshMemory memory = mc::reserve_mesh(mesh, size);
     if (size.triangles == 0) return;
-    std::function<void(const mc::MeshSize&)> reach;
-    if (mesh.n_edges() < size.edges) reach = [&](const mc::MeshSize& part) { mc::reach(mesh, part); };
-    march_.write(run, reach, memory.positions, memory.normals, memory.connectivity);
+    mc::RowMarch::Fresh fresh;
+    if (mesh.n_edges() < size.edges) {
+      const mc::MeshSize held{.vertices = mesh.n_vertices(), .edges = mesh.n_edges(), .triangles = mesh.n_faces()};
+      fresh.reach = [&](const mc::MeshSize& part) { mc::reach(mesh, part); };
+      fresh.bring = [&memory, held](const mc::MeshSize& before, const mc::MeshSize& after) {
+        mc::bring_huge_pages(memory, larger(before, held), after);
+      };
+    }
+    march_.write(run, fresh, memory.positions, memory.normals, memory.connectivity);
     if (settings.normals == NormalKind::kFaces) mc::set_face_normals(mesh);
     if (settings.normals == NormalKind::kAccurate) set_accurate_normals(volume_, settings.outer, run, mesh);
   }
 
  private:
+  static mc::MeshSize larger(const mc::MeshSize& a, const mc::MeshSize& b) {
+    return {.vertices = std::max(a.vertices, b.vertices),
+            .edges = std::max(a.edges, b.edges),
+            .triangles = std::max(a.triangles, b.triangles)};
+  }
   /// Small volumes are done before a second thread is awake.
   [[nodiscard]] Run suited(const Run& asked) const {
     constexpr std::size_t kSmall = std::size_t(1) << 15;

@@ -16,16 +16,19 @@ static_assert(sizeof(IsoMesh::Edge) == 2 * sizeof(HalfEdgeRecord));
 static_assert(sizeof(IsoMesh::Vertex) == sizeof(std::int32_t) && sizeof(IsoMesh::Face) == sizeof(std::int32_t));
 static_assert(sizeof(IsoMesh::Point) == 3 * sizeof(float) && sizeof(IsoMesh::Normal) == 3 * sizeof(float));
 
+constexpr std::uintptr_t kHugePage = std::uintptr_t(2) << 20;
+
+std::uintptr_t round_up(std::uintptr_t address) { return (address + kHugePage - 1) / kHugePage * kHugePage; }
+
 /// Asks for huge pages for memory of which only a page at each end was touched, by the allocator.
 void ask_for_huge_pages(void* memory, std::size_t bytes) {
 #ifdef __linux__
 #ifndef MADV_COLLAPSE
 #define MADV_COLLAPSE 25
 #endif
-  constexpr std::uintptr_t kHugePage = std::uintptr_t(2) << 20;
   if (bytes < kHugePage) return;
   const std::uintptr_t begin = reinterpret_cast<std::uintptr_t>(memory) / kHugePage * kHugePage;
-  const std::uintptr_t end = (reinterpret_cast<std::uintptr_t>(memory) + bytes + kHugePage - 1) / kHugePage * kHugePage;
+  const std::uintptr_t end = round_up(reinterpret_cast<std::uintptr_t>(memory) + bytes);
   const auto advise = [](std::uintptr_t from, std::uintptr_t to, int advice) {
     madvise(reinterpret_cast<void*>(from), to - from, advice);  // NOLINT: an address
   };
@@ -82,6 +85,20 @@ MeshMemory reserve_mesh(IsoMesh& mesh, const MeshSize& size) {
     ask_for_huge_pages(reserved.normals, size.vertices * sizeof(IsoMesh::Normal));
   }
   return reserved;
+}
+
+void bring_huge_pages(const MeshMemory& memory, const MeshSize& before, const MeshSize& after) {
+  const auto bring = [](void* items, std::size_t size, std::size_t first, std::size_t last) {
+    const auto begin = reinterpret_cast<std::uintptr_t>(items);
+    for (std::uintptr_t page = round_up(begin + first * size); page < begin + last * size; page += kHugePage)
+      *reinterpret_cast<volatile char*>(page) = 0;  // NOLINT: an address
+  };
+  const HalfEdgeArrays& links = memory.connectivity;
+  bring(links.half_edges, sizeof(IsoMesh::Edge), before.edges, after.edges);
+  bring(links.vertex_half_edge, sizeof(IsoMesh::Vertex), before.vertices, after.vertices);
+  bring(links.face_half_edge, sizeof(IsoMesh::Face), before.triangles, after.triangles);
+  bring(memory.positions, sizeof(IsoMesh::Point), before.vertices, after.vertices);
+  bring(memory.normals, sizeof(IsoMesh::Normal), before.vertices, after.vertices);
 }
 
 void reach(IsoMesh& mesh, const MeshSize& size) {

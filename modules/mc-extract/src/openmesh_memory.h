@@ -24,6 +24,10 @@ struct MeshMemory {
 /// its parts tested against OpenMesh's own accessors.
 [[nodiscard]] MeshMemory reserve_mesh(IsoMesh& mesh, const MeshSize& size);
 
+/// Touches the huge pages that begin in the memory reserved for what comes after `before`, up to `after`: whoever does
+/// so waits until the system has cleared them, so several threads had better share in it.
+void bring_huge_pages(const MeshMemory& memory, const MeshSize& before, const MeshSize& after);
+
 /// Lets the mesh hold as much as this at least, up to what is reserved: OpenMesh clears what comes. Best done little by
 /// little, each just before it is written, while it is in the cache; others may write what there was meanwhile.
 void reach(IsoMesh& mesh, const MeshSize& size);

@@ -35,15 +35,19 @@ class RowMarch {
   /// The mesh's memory is used again and grows as needed.
   void march(const ExtractSettings& settings, const Run& run, const BrickIndex* index, IndexedMesh& mesh);
 
+  /// How a mesh that does not hold all of it yet gets there, layer by layer. Empty: it does.
+  struct Fresh {
+    std::function<void(const MeshSize& before, const MeshSize& after)> bring;  ///< any layers at once, before `reach`
+    std::function<void(const MeshSize& size)> reach;  ///< one call at a time, before more than that is written
+  };
+
   /// For half-edges, whose kernel takes its size beforehand. First half: what there is, and the vertices of the layers
   /// that fit `room`, while their values are in the cache.
   [[nodiscard]] MeshSize count(const ExtractSettings& settings, const Run& run, const BrickIndex* index,
                                const VertexRoom& room);
   /// Second half: the other vertices and the half-edges. The first vertices are where count() wrote them, or what it
-  /// wrote was copied. With `reach` the mesh does not hold all of it yet: reach(size) is called before more is written,
-  /// one call at a time.
-  void write(const Run& run, const std::function<void(const MeshSize&)>& reach, float* positions, float* normals,
-             const HalfEdgeArrays& out) const;
+  /// wrote was copied.
+  void write(const Run& run, const Fresh& fresh, float* positions, float* normals, const HalfEdgeArrays& out) const;
 
  private:
   /// Slabs [begin, end): a grid plane and what it owns each.

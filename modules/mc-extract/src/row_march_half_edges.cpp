@@ -92,18 +92,22 @@ MeshSize RowMarch::size_up_to(int layer) const {
   return {.vertices = first.vertex_x, .edges = first.face_x, .triangles = first.triangle};
 }
 
-void RowMarch::write(const Run& run, const std::function<void(const MeshSize&)>& reach, float* positions,
-                     float* normals, const HalfEdgeArrays& out) const {
+void RowMarch::write(const Run& run, const Fresh& fresh, float* positions, float* normals,
+                     const HalfEdgeArrays& out) const {
   const auto write_vertices_of = [&](int layer) {
     if (layer >= layers_with_vertices_) write_vertices(layer, positions, normals);
   };
-  if (reach) {
+  if (fresh.reach) {
     const auto nothing = [](int) {};
     LayerPipeline pipeline(layer_count(), {.classify = nothing,
-                                           .count = nothing,
+                                           .count =
+                                               [&](int layer) {
+                                                 const MeshSize before = layer > 0 ? size_up_to(layer - 1) : MeshSize{};
+                                                 fresh.bring(before, size_up_to(layer));
+                                               },
                                            .number =
                                                [&](int layer) {
-                                                 reach(size_up_to(layer));
+                                                 fresh.reach(size_up_to(layer));
                                                  return false;
                                                },
                                            .grow = {},

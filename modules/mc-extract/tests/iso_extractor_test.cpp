@@ -146,8 +146,9 @@ TEST(IsoExtractor, UsesAMeshAgainWithoutATrace) {
 }
 
 TEST(IsoExtractor, WritesOverAMeshThatIsTooSmall) {
-  // Vertices of the first layers are written where the last mesh's lay, and moved when it has to grow.
-  const Volume volume = gyroid(50);
+  // Vertices of the first layers are written where the last mesh's lay, and moved when it has to grow. So large that
+  // each array has pages of 2 MB.
+  const Volume volume = gyroid(160);
   for (const int threads : {1, 3}) {
     IsoExtractor extractor(volume);
     for (const float small : {1.45f, 1.2f, 0.9f}) {
