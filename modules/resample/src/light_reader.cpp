@@ -1,14 +1,18 @@
 #include <fmt/format.h>
 #include <isolux/core/error.h>
+#include <isolux/core/parallel.h>
 #include <isolux/resample/light_reader.h>
 
 #include <algorithm>
 #include <array>
 #include <glm/common.hpp>
+#include <numeric>
 #include <optional>
+#include <vector>
 
 #include "near_field.h"
 #include "texel_near_field.h"
+#include "texel_row.h"
 
 namespace isolux {
 
@@ -58,27 +62,27 @@ struct BrickPlace {
 
 /// Moving every texel to one isovalue and to no normal makes the sum of texels linear in what is stored, so that
 /// hardware filters it.
-void move_to_isovalue(IlluminationGrid& light, const NearField& near_field, const Volume& volume, float isovalue) {
-  const IndexToWorld to_volume = index_to_index(light.lattice, volume.lattice());
+void move_to_isovalue(IlluminationGrid& light, const NearField& near_field, float isovalue, const Run& run) {
+  const Index3& size = light.lattice.size;
   const LightDetail& detail = light.detail;
   const bool turned = !detail.normal_slopes[0].empty();
   const auto channels = std::size_t(light.channels);
-  std::size_t v = 0;
-  for (int k = 0; k < light.lattice.size.z; ++k) {
-    for (int j = 0; j < light.lattice.size.y; ++j) {
-      for (int i = 0; i < light.lattice.size.x; ++i) {
-        const Vec3 centre = to_volume.world({i, j, k});
-        const double step = near_field.field().value(centre) - double(isovalue);
-        const Vec3 normal = turned ? Vec3(Vec3f(near_field.ahead(centre).downhill)) : Vec3(0.0);
-        for (std::size_t c = 0; c < channels; ++c, ++v) {
-          double value = double(light.values[v]);
-          if (!detail.slopes.empty()) value -= double(detail.slopes[v]) * step;
-          for (unsigned a = 0; turned && a < 3; ++a) value -= double(detail.normal_slopes[a][v]) * normal[int(a)];
-          light.values[v] = float(value);
-        }
+  parallel_blocks(std::size_t(size.z) * std::size_t(size.y), 8, run, "", [&](const Block& block) {
+    TexelRow row(near_field, light.lattice);
+    std::vector<int> columns(static_cast<std::size_t>(size.x));
+    std::iota(columns.begin(), columns.end(), 0);
+    for (std::size_t r = block.begin; r < block.end; ++r) {
+      row.look(int(r % std::size_t(size.y)), int(r / std::size_t(size.y)), columns);
+      for (std::size_t v = r * columns.size() * channels; v < (r + 1) * columns.size() * channels; ++v) {
+        const std::size_t n = v / channels - r * columns.size();
+        const Vec3 normal(Vec3f(row.ahead(n).downhill));
+        double value = double(light.values[v]);
+        if (!detail.slopes.empty()) value -= double(detail.slopes[v]) * (row.isovalue(n) - double(isovalue));
+        for (unsigned a = 0; turned && a < 3; ++a) value -= double(detail.normal_slopes[a][v]) * normal[int(a)];
+        light.values[v] = float(value);
       }
     }
-  }
+  });
 }
 
 void require_slopes(const IlluminationGrid& light, const std::vector<float>& slopes, bool wanted) {
@@ -141,7 +145,7 @@ LightReader::LightReader(const Volume& volume, const IlluminationGrid& light, Te
   const ValueRange all = value_range(volume);
   const ValueRange lit = detail.isovalues.value_or(all);
   if (impl->sloped) impl->reference = 0.5f * (std::max(all.low, lit.low) + std::min(all.high, lit.high));
-  if (impl->sloped || impl->turned) move_to_isovalue(impl->offsets, impl->near_field, volume, impl->reference);
+  if (impl->sloped || impl->turned) move_to_isovalue(impl->offsets, impl->near_field, impl->reference, run);
   if (storage == TexelStorage::kBricks && (lit.low > all.low || lit.high < all.high)) {
     LightBricks bricks = make_light_bricks(volume, impl->offsets, lit);
     if (bricks.stored() < light.values.size() * std::size_t(detail.numbers())) {

@@ -7,7 +7,7 @@ TexelRow::TexelRow(const NearField& near_field, const Lattice& texels)
 
 void TexelRow::look(int j, int k, std::span<const int> columns) {
   points_.clear();
-  for (const int i : columns) points_.push_back(Vec3(Vec3f(to_volume_.world(Vec3(i, j, k)))));
+  for (const int i : columns) points_.push_back(to_volume_.world(Vec3(i, j, k)));
   sample_field(near_field_.field(), points_, samples_);
   texels_.resize(columns.size());
   for (std::size_t n = 0; n < columns.size(); ++n) {

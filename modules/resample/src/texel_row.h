@@ -22,6 +22,7 @@ class TexelRow {
   /// Leaves those with an isovalue within the range, or any, that are not in a flat part of the volume; the same of
   /// their columns.
   void keep_lit(const std::optional<ValueRange>& isovalues, std::vector<int>& columns);
+  [[nodiscard]] double isovalue(std::size_t n) const { return texels_[n].isovalue; }
   [[nodiscard]] const NearField::Ahead& ahead(std::size_t n) const { return texels_[n].ahead; }
 
   /// The openness a step (as in NearFieldTerm) ahead of all of them.
@@ -30,7 +31,7 @@ class TexelRow {
 
  private:
   struct Texel {
-    Vec3 index{0.0};  ///< of its centre, rounded as sites are
+    Vec3 index{0.0};  ///< of its centre
     double isovalue = 0.0;
     NearField::Ahead ahead;
   };
