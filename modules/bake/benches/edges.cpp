@@ -8,6 +8,8 @@
 #include <cstdint>
 #include <functional>
 #include <glm/geometric.hpp>
+#include <utility>
+#include <vector>
 
 #include "surface_cases.h"
 
@@ -62,11 +64,11 @@ Subject ball_in_the_sun() {
   return s;
 }
 
-/// Two sheets one and a half voxels apart at most: the upper one in the light, the lower one in the dark.
-Subject two_sheets() {
+/// A ridge of two sheets, the upper one in the light, the lower one in the dark, as far apart as twice the isovalues.
+Subject sheets(std::vector<float> isovalues) {
   Subject s{.volume = read_volume("gen:sphere:32"),
             .scene = {},
-            .isovalues = {-0.6f, -0.4f, -0.25f},
+            .isovalues = std::move(isovalues),
             .exact = {},
             .on_edge = {}};
   const auto height = [](const Vec3& index) { return index.z - 15.3 - 0.13 * (index.x - 15.0); };
@@ -77,6 +79,11 @@ Subject two_sheets() {
       .up = Vec3f(-0.13f, 0.0f, 1.0f), .zenith = Vec3f(1.0f), .horizon = Vec3f(1.0f), .ground = Vec3f(0.0f)};
   return s;
 }
+
+Subject two_sheets() { return sheets({-0.95f, -0.75f}); }
+
+/// Closer than a voxel the interpolant has no two sheets: it falls apart into pods around the voxels next to the ridge.
+Subject within_a_voxel() { return sheets({-0.6f, -0.4f, -0.25f}); }
 
 struct Truth {
   SampleSet points;
@@ -172,13 +179,17 @@ const int kRegistered = [] {
   const std::vector<std::pair<std::string, std::function<Subject()>>> subjects{{"half_lit_ball", half_lit_ball},
                                                                                {"two_balls", two_balls},
                                                                                {"ball_in_the_sun", ball_in_the_sun},
-                                                                               {"two_sheets", two_sheets}};
+                                                                               {"two_sheets", two_sheets},
+                                                                               {"within_a_voxel", within_a_voxel}};
   const Settings denoise{{"denoise", "true"}};
+  const Settings no_normals{{"normals", "false"}};
   const std::vector<std::pair<std::string, Scheme>> schemes{
       {"texels_16", {"texels", 1, 16, "direct", {}}},
       {"texels_16_denoised", {"texels", 1, 16, "direct", denoise}},
       {"texels_128", {"texels", 1, 128, "direct", {}}},
       {"texels_128_denoised", {"texels", 1, 128, "direct", denoise}},
+      {"fit_no_normals_4x4", {"stratified", 4, 4, "fit", no_normals}},
+      {"fit_no_normals_8x16", {"stratified", 8, 16, "fit", no_normals}},
       {"fit_4x4", {"stratified", 4, 4, "fit", {}}},
       {"fit_8x16", {"stratified", 8, 16, "fit", {}}},
       {"fit_8x16_0.73_an_axis", {"stratified", 20.6, 16, "fit", {}, 0.73}}};
