@@ -154,9 +154,15 @@ BakeSettings with_defaults(BakeSettings settings, const Stages& stages) {
   return settings;
 }
 
+BakeSettings with_defaults(BakeSettings settings, const Lattice& volume, const Stages& stages) {
+  if (settings.texels && settings.texels_a_cell == 0.0 && settings.lattice == TexelLattice::kCells)
+    settings.texels_a_cell = density_of(volume, *settings.texels);
+  return with_defaults(std::move(settings), stages);
+}
+
 BakeResult bake(const Volume& volume, const Scene& scene, const BakeSettings& given, const Stages& stages,
                 const Run& run) {
-  BakeSettings settings = with_defaults(given, stages);
+  BakeSettings settings = with_defaults(given, volume.lattice(), stages);
   const Stopwatch watch;
   require_lightable(volume, settings);
   FoundSites found;  // by need and in parts they are found when they are wanted

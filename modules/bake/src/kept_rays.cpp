@@ -49,8 +49,9 @@ Lattice at_least_one_a_cell(const Lattice& texels, const Lattice& volume) {
 
 KeptRays::KeptRays(const Volume& volume, const Scene& scene, const BakeSettings& given, const Stages& stages,
                    const Run& run)
-    : KeptRays(volume, scene, with_defaults(given, stages),
-               find_sites(volume, scene.outer, with_defaults(given, stages), stages, run), stages, run) {}
+    : KeptRays(volume, scene, with_defaults(given, volume.lattice(), stages),
+               find_sites(volume, scene.outer, with_defaults(given, volume.lattice(), stages), stages, run), stages,
+               run) {}
 
 KeptRays::KeptRays(const Volume& volume, const Scene& scene, const BakeSettings& settings, FoundSites found,
                    const Stages& stages, const Run& run)

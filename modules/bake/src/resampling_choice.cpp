@@ -64,6 +64,12 @@ void choose_resampling(BakeSettings& settings) {
                               : (fine ? kFineSites : kFitSites) * std::pow(std::max(1.0, settings.texels_a_cell), 3);
 }
 
+double density_of(const Lattice& volume, const Index3& texels) {
+  double density = 1.0;
+  for (int a = 0; a < 3; ++a) density *= double(texels[a]) / double(std::max(volume.size[a] - 1, 1));
+  return std::round(std::cbrt(density) * 1e6) / 1e6;  // the root's rounding must not cross a limit
+}
+
 double sites_a_texel(const Lattice& volume, const Lattice& texels, const BakeSettings& settings) {
   if (settings.sites_a_cell == 0.0) return 1.0;
   double sites = settings.sites_a_cell;

@@ -6,10 +6,13 @@
 #include <cmath>
 #include <glm/common.hpp>
 
+#include "cell_places.h"
 #include "near_field.h"
 
 namespace isolux {
 namespace {
+
+constexpr std::size_t kBlock = 4096;
 
 /// The texel at corner q of cell (i, j, k).
 std::size_t corner_offset(const Lattice& texels, int i, int j, int k, unsigned q) {
@@ -21,12 +24,10 @@ std::size_t corner_offset(const Lattice& texels, int i, int j, int k, unsigned q
 
 FitTexels::FitTexels(const Volume& volume, const Lattice& texels, std::span<const std::uint32_t> starts,
                      const FitTerms& terms, const Run& run)
-    : texels_(texels), terms_(terms) {
+    : texels_(texels), cells_(TexelCells(volume.lattice(), texels).size()), terms_(terms) {
   number(starts);
   measure(volume, run);
 }
-
-Index3 FitTexels::cells_of(const Lattice& texels) { return glm::max(texels.size - 1, Index3(1)); }
 
 void FitTexels::number(std::span<const std::uint32_t> starts) {
   constexpr std::uint32_t kUsed = 1;
@@ -59,15 +60,17 @@ void FitTexels::measure(const Volume& volume, const Run& run) {
   const auto ny = std::size_t(texels_.size.y);
   isovalues_.resize(size());
   inverse_breadths_.assign(size(), 0.0f);
-  if (terms_.normals) normals_.resize(size());
-  parallel_blocks(size(), 4096, run, "", [&](const Block& block) {
+  for (std::vector<float>& normals : normals_)
+    if (terms_.normals) normals.resize(size());
+  parallel_blocks(size(), kBlock, run, "", [&](const Block& block) {
     for (std::size_t n = block.begin; n < block.end; ++n) {
       const std::size_t t = offsets_[n];
       const std::size_t j = t / nx % ny;
       const std::size_t k = t / (nx * ny);
       const Vec3 centre = to_volume.world({double(t % nx), double(j), double(k)});
       isovalues_[n] = float(near_field.field().value(centre));
-      if (terms_.normals) normals_[n] = Vec3f(near_field.ahead(centre).downhill);
+      const Vec3 normal = terms_.normals ? near_field.ahead(centre).downhill : Vec3(0.0);
+      for (int a = 0; terms_.normals && a < 3; ++a) normals_[std::size_t(a)][n] = float(normal[a]);
       if (!terms_.slopes) continue;
       // The voxels of the cells that the texel's linear tent touches.
       const Index3 low = glm::max(Index3(glm::floor(centre - reach + 1e-6)), Index3(0));
@@ -85,17 +88,45 @@ void FitTexels::measure(const Volume& volume, const Run& run) {
   });
 }
 
-FitCorners FitTexels::corners(int i, int j, int k) const {
-  FitCorners corners{};
-  for (unsigned q = 0; q < 8; ++q) {
-    const std::uint32_t n = number_[corner_offset(texels_, i, j, k, q)];
-    corners.texel[q] = n;
-    if (q == 0) corners.reference = isovalues_[n];
-    corners.isovalue[q] = isovalues_[n] - corners.reference;
-    corners.inverse_breadth[q] = inverse_breadths_[n];
-    for (int a = 0; terms_.normals && a < 3; ++a) corners.normal[unsigned(a)][q] = normals_[n][a];
-  }
-  return corners;
+wide::FitCells FitTexels::cells_along(int j, int k) const {
+  wide::FitCells row{.count = std::size_t(cells().x), .texel_count = size()};
+  for (unsigned p = 0; p < 4; ++p) row.texels[p] = &number_[corner_offset(texels_, 0, j, k, 2 * p)];
+  // Both ends of a used cell's edge are used, so that they are neighbours among the used texels too.
+  row.has_pairs = texels_.size.x > 1;
+  if (terms_.slopes) row.isovalues = isovalues_.data();
+  return row;
+}
+
+wide::FitCentres FitTexels::centres() const {
+  wide::FitCentres centres{.inverse_breadths = inverse_breadths_.data()};
+  for (std::size_t a = 0; terms_.normals && a < 3; ++a) centres.normals[a] = normals_[a].data();
+  return centres;
+}
+
+std::vector<float> FitTexels::moved(std::span<const float> numbers, const Run& run) const {
+  std::vector<float> to(numbers.begin(), numbers.end());
+  parallel_blocks(size(), kBlock, run, "", [&](const Block& block) {
+    float* slopes = to.data() + size();
+    for (std::size_t n = block.begin; terms_.slopes && n < block.end; ++n) slopes[n] *= inverse_breadths_[n];
+    for (std::size_t a = 0; terms_.normals && a < 3; ++a) {
+      const float* along = to.data() + (terms_.first_normal() + a) * size();
+      const float* normals = normals_[a].data();
+      for (std::size_t n = block.begin; n < block.end; ++n) to[n] -= normals[n] * along[n];
+    }
+  });
+  return to;
+}
+
+void FitTexels::move_back(std::span<float> sums, const Run& run) const {
+  parallel_blocks(size(), kBlock, run, "", [&](const Block& block) {
+    float* slopes = sums.data() + size();
+    for (std::size_t n = block.begin; terms_.slopes && n < block.end; ++n) slopes[n] *= inverse_breadths_[n];
+    for (std::size_t a = 0; terms_.normals && a < 3; ++a) {
+      float* along = sums.data() + (terms_.first_normal() + a) * size();
+      const float* normals = normals_[a].data();
+      for (std::size_t n = block.begin; n < block.end; ++n) along[n] -= normals[n] * sums[n];
+    }
+  });
 }
 
 }  // namespace isolux

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "fit_cell.h"
+#include "wide/fit_products.h"
 
 namespace isolux {
 
@@ -26,24 +27,34 @@ class FitTexels {
   /// One over the isovalue span that counts as one in a texel's slope: half the range of f over the texel's support. 0
   /// without slopes.
   [[nodiscard]] std::span<const float> inverse_breadths() const { return inverse_breadths_; }
-  [[nodiscard]] const Lattice& lattice() const { return texels_; }
-  [[nodiscard]] FitCorners corners(int i, int j, int k) const;
-  [[nodiscard]] Index3 cells() const { return cells_of(texels_); }
-
-  /// Cells between texel centres; one where an axis has a single texel.
-  [[nodiscard]] static Index3 cells_of(const Lattice& texels);
+  [[nodiscard]] const FitTerms& terms() const { return terms_; }
+  /// The cells of a row along x but for their samples.
+  [[nodiscard]] wide::FitCells cells_along(int j, int k) const;
+  [[nodiscard]] wide::FitCentres centres() const;
+  /// The isovalue from which those of a cell's samples count; cells as in cells_along().
+  [[nodiscard]] float reference(const wide::FitCells& cells, std::size_t cell) const {
+    return isovalues_[cells.texels[0][cell]];
+  }
+  /// Planes of numbers as samples' features want them: slopes over the isovalue itself, and the normals from which the
+  /// numbers along them count moved into the values.
+  [[nodiscard]] std::vector<float> moved(std::span<const float> numbers, const Run& run) const;
+  /// The transpose of moved(), in place.
+  void move_back(std::span<float> sums, const Run& run) const;
+  [[nodiscard]] const Index3& cells() const { return cells_; }
 
  private:
   void number(std::span<const std::uint32_t> starts);
   void measure(const Volume& volume, const Run& run);
 
   Lattice texels_;
+  Index3 cells_;
   FitTerms terms_;
   std::vector<std::uint32_t> number_;  ///< of every texel of the grid
   std::vector<std::size_t> offsets_;
   std::vector<float> isovalues_;  ///< f at the texel centres
   std::vector<float> inverse_breadths_;
-  std::vector<Vec3f> normals_;  ///< of the level sets through the texel centres, towards lower values; or none
+  std::array<std::vector<float>, 3> normals_;  ///< of the level sets through the texel centres, towards lower values;
+                                               ///< or none
 };
 
 }  // namespace isolux

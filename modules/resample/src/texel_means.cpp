@@ -10,7 +10,6 @@
 #include <vector>
 
 #include "cell_places.h"
-#include "fit_texels.h"
 
 namespace isolux {
 namespace {
@@ -39,14 +38,16 @@ struct TexelMeans::Impl {
   };
 
   Impl(const Volume& volume, const Sites& sites, const Lattice& lattice, const Run& run)
-      : texels(lattice), cells(FitTexels::cells_of(lattice)) {
-    CellPlaces sorted = sort_by_cells(volume, sites, texels, run);
-    starts = std::move(sorted.starts);
+      : texels(lattice), cells(TexelCells(volume.lattice(), lattice).size()) {
+    const TexelCells places(volume.lattice(), texels);
+    CellOrder order = sort_by_cells(places, sites, run);
+    starts = std::move(order.starts);
     rows.resize(sites.size());
     parallel_blocks(rows.size(), 65536, run, "", [&](const Block& block) {
       for (std::size_t r = block.begin; r < block.end; ++r) {
-        const CellPlace& place = sorted.places[r];
-        rows[r] = {.in_cell = place.in_cell, .isovalue = sites.isovalues[place.site], .site = place.site};
+        const std::uint32_t site = order.sites[r];
+        rows[r] = {
+            .in_cell = places.place(sites.positions[site]).in_cell, .isovalue = sites.isovalues[site], .site = site};
       }
     });
     measure(volume, run);

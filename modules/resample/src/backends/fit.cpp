@@ -11,27 +11,6 @@
 namespace isolux::backends {
 namespace {
 
-/// y += a x, and sums of products in a fixed order.
-void add_scaled(FitVector& y, double a, const FitVector& x) {
-  for (std::size_t i = 0; i < y.numbers.size(); ++i) y.numbers[i] += float(a) * x.numbers[i];
-  for (std::size_t t = 0; t < y.terms.size(); ++t) y.terms[t] += a * x.terms[t];
-}
-
-double product(const FitVector& x, const FitVector& y) {
-  double sum = 0.0;
-  for (std::size_t i = 0; i < x.numbers.size(); ++i) sum += double(x.numbers[i]) * double(y.numbers[i]);
-  for (std::size_t t = 0; t < x.terms.size(); ++t) sum += x.terms[t] * y.terms[t];
-  return sum;
-}
-
-FitVector divided(const FitVector& x, const FitVector& by) {
-  FitVector y = x;
-  for (std::size_t i = 0; i < y.numbers.size(); ++i)
-    y.numbers[i] = by.numbers[i] > 0 ? y.numbers[i] / by.numbers[i] : 0;
-  for (std::size_t t = 0; t < y.terms.size(); ++t) y.terms[t] = by.terms[t] > 0 ? y.terms[t] / by.terms[t] : 0;
-  return y;
-}
-
 class Fit final : public Resampler {
  public:
   struct Options {
@@ -41,7 +20,7 @@ class Fit final : public Resampler {
     double value_prior = 0.1;
     double slope_prior = 0.03;
     double normal_prior = 0.03;
-    int iterations = 8;
+    int iterations = 4;
 
     void describe(OptionVisitor& option) {
       option("slopes", slopes, {.help = "a second number a texel: how its light changes with the isovalue"});
@@ -64,9 +43,7 @@ class Fit final : public Resampler {
               .unit = "samples",
               .help = "weight of no change with the normal in a texel; grows with the samples' noise"});
       option("iterations", iterations,
-             {.min = 1,
-              .max = 1000,
-              .help = "of the conjugate gradients in the first of three rounds; half as many in the others"});
+             {.min = 1, .max = 1000, .help = "of the conjugate gradients in each of three rounds"});
     }
   };
   explicit Fit(const Options& options) : options_(options) {}
@@ -86,12 +63,13 @@ class Fit final : public Resampler {
       if (terms.normals) slopes.assign(result.grid.values.size(), 0.0f);
     if (options_.near_field) {
       for (std::size_t t = 0; t < kNearFieldSteps.size(); ++t) {
-        detail.near_field.push_back(
-            {.step = float(system.steps()[t]), .mean = float(system.mean_openness()[t]), .weight = Vec3f(0.0f)});
+        detail.near_field.push_back({.step = float(system.rows().steps()[t]),
+                                     .mean = float(system.rows().mean_openness()[t]),
+                                     .weight = Vec3f(0.0f)});
       }
     }
     const FitDamping damping = damping_for(samples);
-    for (int c = 0; c < samples.channels; ++c) fit_channel(system, samples, damping, c, result);
+    for (int c = 0; c < samples.channels; ++c) fit_channel(system, samples, damping, c, result, run);
     return result;
   }
 
@@ -117,35 +95,34 @@ class Fit final : public Resampler {
   /// is read so: it ends where the weighted errors around a texel have no mean but what damping leaves. Light at its
   /// bounds is common (the open sky, a hole), and a fit without them is cut off on one side there. Each round's problem
   /// is linear: samples whose reading was clamped before hardly count as following it (nearly Newton's method).
-  [[nodiscard]] FitVector solve(const FitSystem& system, std::span<const float> light, const FitDamping& damping,
-                                const FitVector& prior, const ValueRange& bounds) const {
+  [[nodiscard]] FitVector solve(const FitSystem& system, const FitChannel& light, const FitDamping& damping,
+                                const FitVector& prior, const ValueRange& bounds, const Run& run) const {
     FitVector x = system.zero();
     for (int round = 0; round < kRounds; ++round) {
       const FitRest rest = system.rest(light, prior, x, damping, bounds);
-      descend(system, damping, rest, round == 0 ? options_.iterations : (options_.iterations + 1) / 2, x);
+      descend(system, damping, rest, options_.iterations, x, run);
     }
     return x;
   }
 
-  /// Hestenes & Stiefel, "Methods of conjugate gradients for solving linear systems", 1952, with the diagonal as
-  /// preconditioner.
+  /// Hestenes & Stiefel, "Methods of conjugate gradients for solving linear systems", 1952, with the texels' own blocks
+  /// as preconditioner.
   static void descend(const FitSystem& system, const FitDamping& damping, const FitRest& rest, int iterations,
-                      FitVector& x) {
-    const FitVector diagonal = system.diagonal(damping, rest.weights);
+                      FitVector& x, const Run& run) {
+    const FitBlocks inverse = system.inverse_blocks(damping, rest.weights);
     FitVector residual = rest.gradient;
-    FitVector step = divided(residual, diagonal);
-    double error = product(residual, step);
+    FitVector step = inverse.apply(residual, run);
+    double error = product(residual, step, run);
     const double enough = 1e-8 * error;
     for (int i = 0; i < iterations && error > enough; ++i) {
       const FitVector image = system.normal_product(step, damping, rest.weights);
-      const double length = error / product(step, image);
-      add_scaled(x, length, step);
-      add_scaled(residual, -length, image);
-      const FitVector scaled = divided(residual, diagonal);
-      const double next = product(residual, scaled);
-      FitVector turned = scaled;
-      add_scaled(turned, next / error, step);
-      step = std::move(turned);
+      const double length = error / product(step, image, run);
+      add_scaled(x, length, step, run);
+      if (i + 1 == iterations) return;
+      add_scaled(residual, -length, image, run);
+      const FitVector scaled = inverse.apply(residual, run);
+      const double next = product(residual, scaled, run);
+      add_to_scaled(step, next / error, scaled, run);
       error = next;
     }
   }
@@ -157,14 +134,13 @@ class Fit final : public Resampler {
   }
 
   void fit_channel(const FitSystem& system, const SampleSet& samples, const FitDamping& damping, int channel,
-                   ResampledGrid& result) const {
+                   ResampledGrid& result, const Run& run) const {
     const auto channels = std::size_t(samples.channels);
     const auto first = std::size_t(channel);
-    std::vector<float> light(samples.size());
-    for (std::size_t s = 0; s < light.size(); ++s) light[s] = samples.radiance[s * channels + first];
+    const FitChannel light{.first = samples.radiance.data() + first, .stride = channels};
     std::vector<float> coverage;
     const FitVector prior = system.prior(light, coverage);
-    const FitVector x = solve(system, light, damping, prior, read_between(result.grid.detail));
+    const FitVector x = solve(system, light, damping, prior, read_between(result.grid.detail), run);
     LightDetail& detail = result.grid.detail;
     const FitTexels& texels = system.texels();
     const FitTerms& terms = system.terms();
@@ -172,12 +148,12 @@ class Fit final : public Resampler {
       if (!(coverage[n] > 0.0f)) continue;
       const std::size_t t = texels.offsets()[n];
       const std::size_t at = t * channels + first;
-      const float* numbers = &x.numbers[n * terms.count()];
+      const auto number = [&](std::size_t k) { return x.numbers[k * texels.size() + n]; };
       result.lit[t] = 1;
-      result.grid.values[at] = prior.numbers[n * terms.count()] + numbers[0];
-      if (terms.slopes) detail.slopes[at] = numbers[1] * texels.inverse_breadths()[n];
+      result.grid.values[at] = prior.numbers[n] + number(0);
+      if (terms.slopes) detail.slopes[at] = number(1) * texels.inverse_breadths()[n];
       for (std::size_t a = 0; terms.normals && a < 3; ++a)
-        detail.normal_slopes[a][at] = numbers[terms.first_normal() + a];
+        detail.normal_slopes[a][at] = number(terms.first_normal() + a);
     }
     for (std::size_t t = 0; t < detail.near_field.size(); ++t) {
       Vec3f& weight = detail.near_field[t].weight;

@@ -106,6 +106,9 @@ struct BakeResult {
 /// 1.15 texels an axis, 1.7 for one isovalue; where a number of samples or another sampler is asked for,
 /// low-discrepancy sites and Shepard's interpolation over a cell grid; the default tracer.
 [[nodiscard]] BakeSettings with_defaults(BakeSettings settings, const Stages& stages);
+/// The same for a volume: what the fit tells of a texel and how many sites it wants then goes by settings.texels as it
+/// goes by texels_a_cell.
+[[nodiscard]] BakeSettings with_defaults(BakeSettings settings, const Lattice& volume, const Stages& stages);
 
 /// Lights all level sets of a volume at once, with_defaults(). The same bits for any number of threads. Where
 /// scene.sides is kBoth, each side's light is bit by bit that of a bake of scene_of_side(); a time is shared,

@@ -17,6 +17,13 @@ class Points {
   void push_back(const Vec3& index) {
     for (int a = 0; a < 3; ++a) axes_[std::size_t(a)].push_back(index[a]);
   }
+  /// So many, those added at the origin; set() where they lie.
+  void resize(std::size_t count) {
+    for (auto& axis : axes_) axis.resize(count);
+  }
+  void set(std::size_t i, const Vec3& index) {
+    for (int a = 0; a < 3; ++a) axes_[std::size_t(a)][i] = index[a];
+  }
   [[nodiscard]] std::size_t size() const { return axes_[0].size(); }
   [[nodiscard]] Vec3 at(std::size_t i) const { return {axes_[0][i], axes_[1][i], axes_[2][i]}; }
   [[nodiscard]] const double* axis(int a) const { return axes_[std::size_t(a)].data(); }

@@ -1,0 +1,127 @@
+#include "fit_rows.h"
+
+#include <isolux/core/field_points.h>
+#include <isolux/core/parallel.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace isolux {
+namespace {
+
+constexpr std::size_t kTerms = kNearFieldSteps.size();
+/// Of the mean weight: no sample counts for nothing.
+constexpr double kLeastWeight = 1e-3;
+/// Lines of cells.
+constexpr std::size_t kBlock = 16;
+/// Rows looked at together: few enough to stay in the first cache.
+constexpr std::size_t kTogether = 64;
+
+/// What the field says of samples, many at a time.
+class Looks {
+ public:
+  Looks(const NearField& near_field, const SampleSet& samples, const FitRows::Terms& steps)
+      : near_field_(near_field), samples_(samples), steps_(steps) {}
+
+  /// From rows' samples to their normals, their openness if asked for, and the roots of the field's steepness.
+  void look(std::span<const std::uint32_t> samples, const FitTerms& terms, NearFieldUse use, FitRow* rows,
+            float* weights) {
+    points_.resize(samples.size());
+    for (std::size_t i = 0; i < samples.size(); ++i) points_.set(i, Vec3(samples_.sites.positions[samples[i]]));
+    sample_field(near_field_.field(), points_, field_);
+    ahead_.resize(samples.size());
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+      const NearField::Ahead ahead = near_field_.ahead_of(field_.gradient(i));
+      for (std::size_t a = 0; terms.normals && a < 3; ++a)
+        rows[i].feature[terms.first_normal() - 1 + a] = float(ahead.downhill[int(a)]);
+      weights[i] = float(std::sqrt(ahead.fall));
+      ahead_[i] = ahead;
+    }
+    for (std::size_t t = 0; use == NearFieldUse::kFitted && t < kTerms; ++t) look_at(t, samples, rows);
+  }
+
+ private:
+  void look_at(std::size_t t, std::span<const std::uint32_t> samples, FitRow* rows) {
+    there_.resize(samples.size());
+    for (std::size_t i = 0; i < samples.size(); ++i) there_.set(i, points_.at(i) + steps_[t] * ahead_[i].step);
+    sample_values(near_field_.field(), there_, values_);
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+      if (!(ahead_[i].fall > 0.0)) continue;
+      const auto isovalue = double(samples_.sites.isovalues[samples[i]]);
+      rows[i].openness[t] = NearField::openness_of(values_[i], ahead_[i], isovalue, steps_[t]);
+    }
+  }
+
+  const NearField& near_field_;
+  const SampleSet& samples_;
+  const FitRows::Terms& steps_;
+  Points points_;
+  Points there_;
+  PointSamples field_;
+  std::vector<double> values_;
+  std::vector<NearField::Ahead> ahead_;
+};
+
+}  // namespace
+
+FitRows::FitRows(const Volume& volume, const SampleSet& samples, const TexelCells& cells, CellOrder order,
+                 const FitTexels& texels, NearFieldUse near_field, const Run& run)
+    : starts_(std::move(order.starts)),
+      samples_(std::move(order.sites)),
+      rows_(std::make_unique_for_overwrite<FitRow[]>(samples_.size())),
+      weights_(samples_.size()) {
+  const NearField ahead(volume);
+  const double outwards = ahead.outwards(samples.sites);
+  for (double& step : steps_) step *= outwards;
+  measure(ahead, samples, cells, texels, near_field, run);
+}
+
+void FitRows::measure(const NearField& near_field, const SampleSet& set, const TexelCells& cells,
+                      const FitTexels& texels, NearFieldUse use, const Run& run) {
+  const auto ny = std::size_t(cells.size().y);
+  const std::size_t lines = ny * std::size_t(cells.size().z);
+  std::vector<Sums> blocks(block_count(lines, kBlock), Sums{});
+  parallel_blocks(lines, kBlock, run, "", [&](const Block& block) {
+    for (std::size_t line = block.begin; line < block.end; ++line) {
+      const wide::FitCells along = texels.cells_along(int(line % ny), int(line / ny));
+      const std::uint32_t* starts = &starts_[line * along.count];
+      for (std::size_t c = 0; c < along.count; ++c) {
+        for (std::size_t r = starts[c]; r < starts[c + 1]; ++r) {
+          const std::uint32_t sample = samples_[r];
+          rows_[r] = {.place = cells.place(set.sites.positions[sample]).in_cell, .feature = {}, .openness = {}};
+          if (texels.terms().slopes) rows_[r].feature[0] = set.sites.isovalues[sample] - texels.reference(along, c);
+        }
+      }
+    }
+    Looks looks(near_field, set, steps_);
+    const std::size_t end = starts_[block.end * std::size_t(cells.size().x)];
+    for (std::size_t r = starts_[block.begin * std::size_t(cells.size().x)]; r < end; r += kTogether) {
+      const std::size_t count = std::min(kTogether, end - r);
+      looks.look(samples().subspan(r, count), texels.terms(), use, &rows_[r], &weights_[r]);
+      for (std::size_t i = r; i < r + count; ++i) {
+        for (std::size_t t = 0; t < kTerms; ++t) blocks[block.index][t] += double(rows_[i].openness[t]);
+        blocks[block.index][kTerms] += double(weights_[i]);
+      }
+    }
+  });
+  Sums sums{};
+  for (const Sums& block : blocks) {
+    for (std::size_t t = 0; t <= kTerms; ++t) sums[t] += block[t];
+  }
+  centre(sums, run);
+}
+
+void FitRows::centre(const Sums& sums, const Run& run) {
+  const auto count = double(size());
+  const double weight = sums[kTerms] / count;
+  for (std::size_t t = 0; t < kTerms; ++t) mean_openness_[t] = sums[t] / count;
+  parallel_blocks(size(), 65536, run, "", [&](const Block& block) {
+    for (std::size_t r = block.begin; r < block.end; ++r) {
+      for (std::size_t t = 0; t < kTerms; ++t) rows_[r].openness[t] -= float(mean_openness_[t]);
+      weights_[r] = weight > 0.0 ? float(std::max(double(weights_[r]) / weight, kLeastWeight)) : 1.0f;
+    }
+  });
+}
+
+}  // namespace isolux
