@@ -7,7 +7,7 @@
 namespace isolux {
 namespace {
 
-constexpr std::size_t kBlock = 4096;
+constexpr std::size_t kBlocksTogether = 4096;
 /// Of its diagonal element: below that a pivot is what rounding left of it.
 constexpr double kLeastPivot = 1e-6;
 
@@ -63,7 +63,7 @@ FitBlocks::FitBlocks(std::size_t texels, std::size_t numbers)
 
 template <std::size_t kNumbers>
 void FitBlocks::invert_texels(const Run& run) {
-  parallel_blocks(texels_, kBlock, run, "", [&](const Block& block) {
+  parallel_blocks(texels_, kBlocksTogether, run, "", [&](const Block& block) {
     Square<kNumbers> m{};
     for (std::size_t n = block.begin; n < block.end; ++n) {
       for (std::size_t j = 0; j < kNumbers; ++j)
@@ -94,7 +94,7 @@ void FitBlocks::invert(const Run& run) {
 
 FitVector FitBlocks::apply(const FitVector& x, const Run& run) const {
   FitVector y{.numbers = std::vector<float>(x.numbers.size(), 0.0f), .terms = {}};
-  parallel_blocks(texels_, kBlock, run, "", [&](const Block& block) {
+  parallel_blocks(texels_, kBlocksTogether, run, "", [&](const Block& block) {
     for (std::size_t j = 0; j < numbers_; ++j) {
       float* to = &y.numbers[j * texels_];
       for (std::size_t k = 0; k < numbers_; ++k) {

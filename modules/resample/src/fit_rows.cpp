@@ -10,11 +10,11 @@
 namespace isolux {
 namespace {
 
-constexpr std::size_t kTerms = kNearFieldSteps.size();
+constexpr std::size_t kOpennessTerms = kNearFieldSteps.size();
 /// Of the mean weight: no sample counts for nothing.
 constexpr double kLeastWeight = 1e-3;
 /// Lines of cells.
-constexpr std::size_t kBlock = 16;
+constexpr std::size_t kLinesABlock = 16;
 /// Rows looked at together: few enough to stay in the first cache.
 constexpr std::size_t kTogether = 64;
 
@@ -38,7 +38,7 @@ class Looks {
       weights[i] = float(std::sqrt(ahead.fall));
       ahead_[i] = ahead;
     }
-    for (std::size_t t = 0; use == NearFieldUse::kFitted && t < kTerms; ++t) look_at(t, samples, rows);
+    for (std::size_t t = 0; use == NearFieldUse::kFitted && t < kOpennessTerms; ++t) look_at(t, samples, rows);
   }
 
  private:
@@ -81,8 +81,8 @@ void FitRows::measure(const NearField& near_field, const SampleSet& set, const T
                       const FitTexels& texels, NearFieldUse use, const Run& run) {
   const auto ny = std::size_t(cells.size().y);
   const std::size_t lines = ny * std::size_t(cells.size().z);
-  std::vector<Sums> blocks(block_count(lines, kBlock), Sums{});
-  parallel_blocks(lines, kBlock, run, "", [&](const Block& block) {
+  std::vector<Sums> blocks(block_count(lines, kLinesABlock), Sums{});
+  parallel_blocks(lines, kLinesABlock, run, "", [&](const Block& block) {
     for (std::size_t line = block.begin; line < block.end; ++line) {
       const wide::FitCells along = texels.cells_along(int(line % ny), int(line / ny));
       const std::uint32_t* starts = &starts_[line * along.count];
@@ -100,25 +100,25 @@ void FitRows::measure(const NearField& near_field, const SampleSet& set, const T
       const std::size_t count = std::min(kTogether, end - r);
       looks.look(samples().subspan(r, count), texels.terms(), use, &rows_[r], &weights_[r]);
       for (std::size_t i = r; i < r + count; ++i) {
-        for (std::size_t t = 0; t < kTerms; ++t) blocks[block.index][t] += double(rows_[i].openness[t]);
-        blocks[block.index][kTerms] += double(weights_[i]);
+        for (std::size_t t = 0; t < kOpennessTerms; ++t) blocks[block.index][t] += double(rows_[i].openness[t]);
+        blocks[block.index][kOpennessTerms] += double(weights_[i]);
       }
     }
   });
   Sums sums{};
   for (const Sums& block : blocks) {
-    for (std::size_t t = 0; t <= kTerms; ++t) sums[t] += block[t];
+    for (std::size_t t = 0; t <= kOpennessTerms; ++t) sums[t] += block[t];
   }
   centre(sums, run);
 }
 
 void FitRows::centre(const Sums& sums, const Run& run) {
   const auto count = double(size());
-  const double weight = sums[kTerms] / count;
-  for (std::size_t t = 0; t < kTerms; ++t) mean_openness_[t] = sums[t] / count;
+  const double weight = sums[kOpennessTerms] / count;
+  for (std::size_t t = 0; t < kOpennessTerms; ++t) mean_openness_[t] = sums[t] / count;
   parallel_blocks(size(), 65536, run, "", [&](const Block& block) {
     for (std::size_t r = block.begin; r < block.end; ++r) {
-      for (std::size_t t = 0; t < kTerms; ++t) rows_[r].openness[t] -= float(mean_openness_[t]);
+      for (std::size_t t = 0; t < kOpennessTerms; ++t) rows_[r].openness[t] -= float(mean_openness_[t]);
       weights_[r] = weight > 0.0 ? float(std::max(double(weights_[r]) / weight, kLeastWeight)) : 1.0f;
     }
   });

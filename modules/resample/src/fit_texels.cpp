@@ -12,7 +12,7 @@
 namespace isolux {
 namespace {
 
-constexpr std::size_t kBlock = 4096;
+constexpr std::size_t kTexelsABlock = 4096;
 
 /// The texel at corner q of cell (i, j, k).
 std::size_t corner_offset(const Lattice& texels, int i, int j, int k, unsigned q) {
@@ -62,7 +62,7 @@ void FitTexels::measure(const Volume& volume, const Run& run) {
   inverse_breadths_.assign(size(), 0.0f);
   for (std::vector<float>& normals : normals_)
     if (terms_.normals) normals.resize(size());
-  parallel_blocks(size(), kBlock, run, "", [&](const Block& block) {
+  parallel_blocks(size(), kTexelsABlock, run, "", [&](const Block& block) {
     for (std::size_t n = block.begin; n < block.end; ++n) {
       const std::size_t t = offsets_[n];
       const std::size_t j = t / nx % ny;
@@ -105,7 +105,7 @@ wide::FitCentres FitTexels::centres() const {
 
 std::vector<float> FitTexels::moved(std::span<const float> numbers, const Run& run) const {
   std::vector<float> to(numbers.begin(), numbers.end());
-  parallel_blocks(size(), kBlock, run, "", [&](const Block& block) {
+  parallel_blocks(size(), kTexelsABlock, run, "", [&](const Block& block) {
     float* slopes = to.data() + size();
     for (std::size_t n = block.begin; terms_.slopes && n < block.end; ++n) slopes[n] *= inverse_breadths_[n];
     for (std::size_t a = 0; terms_.normals && a < 3; ++a) {
@@ -118,7 +118,7 @@ std::vector<float> FitTexels::moved(std::span<const float> numbers, const Run& r
 }
 
 void FitTexels::move_back(std::span<float> sums, const Run& run) const {
-  parallel_blocks(size(), kBlock, run, "", [&](const Block& block) {
+  parallel_blocks(size(), kTexelsABlock, run, "", [&](const Block& block) {
     float* slopes = sums.data() + size();
     for (std::size_t n = block.begin; terms_.slopes && n < block.end; ++n) slopes[n] *= inverse_breadths_[n];
     for (std::size_t a = 0; terms_.normals && a < 3; ++a) {

@@ -5,7 +5,7 @@
 namespace isolux {
 namespace {
 
-constexpr std::size_t kBlock = 16384;
+constexpr std::size_t kNumbersABlock = 16384;
 
 /// In sums side by side, which need not wait for each other.
 double block_product(const float* x, const float* y, std::size_t count) {
@@ -20,22 +20,22 @@ double block_product(const float* x, const float* y, std::size_t count) {
 }  // namespace
 
 void add_scaled(FitVector& y, double a, const FitVector& x, const Run& run) {
-  parallel_blocks(y.numbers.size(), kBlock, run, "", [&](const Block& block) {
+  parallel_blocks(y.numbers.size(), kNumbersABlock, run, "", [&](const Block& block) {
     for (std::size_t i = block.begin; i < block.end; ++i) y.numbers[i] += float(a) * x.numbers[i];
   });
   for (std::size_t t = 0; t < y.terms.size(); ++t) y.terms[t] += a * x.terms[t];
 }
 
 void add_to_scaled(FitVector& y, double a, const FitVector& x, const Run& run) {
-  parallel_blocks(y.numbers.size(), kBlock, run, "", [&](const Block& block) {
+  parallel_blocks(y.numbers.size(), kNumbersABlock, run, "", [&](const Block& block) {
     for (std::size_t i = block.begin; i < block.end; ++i) y.numbers[i] = x.numbers[i] + float(a) * y.numbers[i];
   });
   for (std::size_t t = 0; t < y.terms.size(); ++t) y.terms[t] = x.terms[t] + a * y.terms[t];
 }
 
 double product(const FitVector& x, const FitVector& y, const Run& run) {
-  std::vector<double> sums(block_count(x.numbers.size(), kBlock), 0.0);
-  parallel_blocks(x.numbers.size(), kBlock, run, "", [&](const Block& block) {
+  std::vector<double> sums(block_count(x.numbers.size(), kNumbersABlock), 0.0);
+  parallel_blocks(x.numbers.size(), kNumbersABlock, run, "", [&](const Block& block) {
     sums[block.index] = block_product(&x.numbers[block.begin], &y.numbers[block.begin], block.end - block.begin);
   });
   double sum = 0.0;
