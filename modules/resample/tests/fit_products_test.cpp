@@ -15,7 +15,7 @@
 namespace isolux {
 namespace {
 
-constexpr std::size_t kTexels = 28;  // four lines of seven
+constexpr std::size_t kTexelsOfLines = 28;  // four lines of seven
 constexpr std::size_t kTerms = kNearFieldSteps.size();
 /// Some twenty products of numbers of size one are added in floats of 6e-8: 1e-6, with room.
 constexpr double kRounding = 1e-5;
@@ -32,7 +32,7 @@ void choose_target(std::int64_t target) {
   hwy::GetChosenTarget().Update(hwy::SupportedTargets());
 }
 
-std::string target_name(const testing::TestParamInfo<std::int64_t>& target) { return hwy::TargetName(target.param); }
+std::string target_name(const ::testing::TestParamInfo<std::int64_t>& target) { return hwy::TargetName(target.param); }
 
 /// A line of six cells, or of one where the axis has a single texel, with no to five rows each.
 struct Line {
@@ -53,7 +53,7 @@ struct Line {
 
   float draw() { return 2.0f * random.uniform_float() - 1.0f; }
   std::vector<float> plane(std::size_t planes) {
-    std::vector<float> all(planes * kTexels);
+    std::vector<float> all(planes * kTexelsOfLines);
     for (float& v : all) v = draw();
     return all;
   }
@@ -76,7 +76,7 @@ struct Line {
     for (std::size_t p = 0; p < 4; ++p) all.texels[p] = texels[p].data();
     all.rows = rows.data();
     all.weights = weights.data();
-    all.texel_count = kTexels;
+    all.texel_count = kTexelsOfLines;
     all.isovalues = has_slopes() ? isovalues.data() : nullptr;
     return all;
   }
@@ -100,11 +100,11 @@ struct Line {
     std::vector<std::vector<double>> all;
     for (std::size_t c = 0; c + 1 < starts.size(); ++c) {
       for (std::size_t r = starts[c]; r < starts[c + 1]; ++r) {
-        std::vector<double> line(numbers * kTexels + kTerms, 0.0);
+        std::vector<double> line(numbers * kTexelsOfLines + kTerms, 0.0);
         for (std::size_t k = 0; k < numbers; ++k)
           for (unsigned q = 0; q < 8; ++q)
-            line[k * kTexels + texel(c, q)] += weight(rows[r], q) * feature(rows[r], c, q, k);
-        for (std::size_t t = 0; t < kTerms; ++t) line[numbers * kTexels + t] = double(rows[r].openness[t]);
+            line[k * kTexelsOfLines + texel(c, q)] += weight(rows[r], q) * feature(rows[r], c, q, k);
+        for (std::size_t t = 0; t < kTerms; ++t) line[numbers * kTexelsOfLines + t] = double(rows[r].openness[t]);
         all.push_back(line);
       }
     }
@@ -133,7 +133,7 @@ struct Line {
   std::vector<float> x;
 };
 
-class FitProducts : public testing::TestWithParam<std::int64_t> {
+class FitProducts : public ::testing::TestWithParam<std::int64_t> {
  protected:
   void SetUp() override { choose_target(GetParam()); }
   void TearDown() override { choose_target(0); }
@@ -197,7 +197,7 @@ TEST_P(FitProducts, LeaveWhatIsNotRead) {
 TEST_P(FitProducts, HaveTheMatrixsBlocks) {
   for_each_line([](const Line& line) {
     const std::size_t pairs = line.numbers * (line.numbers + 1) / 2;
-    std::vector<double> expected(pairs * kTexels, 0.0);
+    std::vector<double> expected(pairs * kTexelsOfLines, 0.0);
     std::array<std::array<double, kTerms>, kTerms> expected_terms{};
     for (std::size_t c = 0; c + 1 < line.starts.size(); ++c) {
       for (std::size_t r = line.starts[c]; r < line.starts[c + 1]; ++r) {
@@ -213,7 +213,7 @@ TEST_P(FitProducts, HaveTheMatrixsBlocks) {
           std::size_t pair = 0;
           for (std::size_t j = 0; j < line.numbers; ++j)
             for (std::size_t k = j; k < line.numbers; ++k)
-              expected[kTexels * pair++ + line.texel(c, q)] +=
+              expected[kTexelsOfLines * pair++ + line.texel(c, q)] +=
                   weight * std::pow(Line::weight(row, q), 2.0) * counts[j] * counts[k];
         }
         for (std::size_t s = 0; s < kTerms; ++s)
@@ -232,7 +232,7 @@ TEST_P(FitProducts, HaveTheMatrixsBlocks) {
   });
 }
 
-INSTANTIATE_TEST_SUITE_P(EveryTarget, FitProducts, testing::ValuesIn(targets()), target_name);
+INSTANTIATE_TEST_SUITE_P(EveryTarget, FitProducts, ::testing::ValuesIn(targets()), target_name);
 
 }  // namespace
 }  // namespace isolux
