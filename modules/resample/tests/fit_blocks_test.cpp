@@ -8,28 +8,28 @@
 namespace isolux {
 namespace {
 
-constexpr std::size_t kTexels = 20;
+constexpr std::size_t kTexelsOfBlocks = 20;
 
 // Blocks of more samples than numbers, times their inverses, of any vector: the vector. In floats of 6e-8 and of blocks
 // whose condition is some hundred, hence 1e-4.
 TEST(FitBlocks, InvertEachTexelsBlock) {
   for (const std::size_t numbers : {1, 2, 4, 5}) {
-    FitBlocks blocks(kTexels, numbers);
-    FitVector x{.numbers = std::vector<float>(kTexels * numbers), .terms = {0.4, -0.7, 0.2, 1.0}};
-    FitVector product{.numbers = std::vector<float>(kTexels * numbers, 0.0f), .terms = {}};
+    FitBlocks blocks(kTexelsOfBlocks, numbers);
+    FitVector x{.numbers = std::vector<float>(kTexelsOfBlocks * numbers), .terms = {0.4, -0.7, 0.2, 1.0}};
+    FitVector product{.numbers = std::vector<float>(kTexelsOfBlocks * numbers, 0.0f), .terms = {}};
     RandomStream random(3, numbers);
     for (float& v : x.numbers) v = random.uniform_float();
     const auto add_sample = [&](const auto& row, const auto& add) {
       for (std::size_t j = 0; j < row.size(); ++j)
         for (std::size_t k = 0; k < row.size(); ++k) add(j, k, row[j] * row[k]);
     };
-    for (std::size_t n = 0; n < kTexels; ++n) {
+    for (std::size_t n = 0; n < kTexelsOfBlocks; ++n) {
       for (int sample = 0; sample < 20; ++sample) {
         std::vector<double> row(numbers);
         for (double& v : row) v = 2.0 * random.uniform_double() - 1.0;
         add_sample(row, [&](std::size_t j, std::size_t k, double v) {
           if (j <= k) blocks.plane(j, k)[n] += float(v);
-          product.numbers[j * kTexels + n] += float(v) * x.numbers[k * kTexels + n];
+          product.numbers[j * kTexelsOfBlocks + n] += float(v) * x.numbers[k * kTexelsOfBlocks + n];
         });
       }
     }
