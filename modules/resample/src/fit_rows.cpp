@@ -1,11 +1,12 @@
 #include "fit_rows.h"
 
-#include <isolux/core/field_points.h>
 #include <isolux/core/parallel.h>
 
 #include <algorithm>
 #include <cmath>
 #include <utility>
+
+#include "sample_looks.h"
 
 namespace isolux {
 namespace {
@@ -18,50 +19,21 @@ constexpr std::size_t kLinesABlock = 16;
 /// Rows looked at together: few enough to stay in the first cache.
 constexpr std::size_t kTogether = 64;
 
-/// What the field says of samples, many at a time.
-class Looks {
- public:
-  Looks(const NearField& near_field, const SampleSet& samples, const FitRows::Terms& steps)
-      : near_field_(near_field), samples_(samples), steps_(steps) {}
-
-  /// From rows' samples to their normals, their openness if asked for, and the roots of the field's steepness.
-  void look(std::span<const std::uint32_t> samples, const FitTerms& terms, NearFieldUse use, FitRow* rows,
-            float* weights) {
-    points_.resize(samples.size());
-    for (std::size_t i = 0; i < samples.size(); ++i) points_.set(i, Vec3(samples_.sites.positions[samples[i]]));
-    sample_field(near_field_.field(), points_, field_);
-    ahead_.resize(samples.size());
-    for (std::size_t i = 0; i < samples.size(); ++i) {
-      const NearField::Ahead ahead = near_field_.ahead_of(field_.gradient(i));
-      for (std::size_t a = 0; terms.normals && a < 3; ++a)
-        rows[i].feature[terms.first_normal() - 1 + a] = float(ahead.downhill[int(a)]);
-      weights[i] = float(std::sqrt(ahead.fall));
-      ahead_[i] = ahead;
-    }
-    for (std::size_t t = 0; use == NearFieldUse::kFitted && t < kOpennessTerms; ++t) look_at(t, samples, rows);
+/// From rows' samples to their normals, their openness if asked for, and the roots of the field's steepness.
+void look(std::span<const std::uint32_t> samples, const FitTerms& terms, const FitRows::Terms& steps, NearFieldUse use,
+          SampleLooks& looks, FitRow* rows, float* weights) {
+  looks.look(samples);
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    const NearField::Ahead& ahead = looks.ahead(i);
+    for (std::size_t a = 0; terms.normals && a < 3; ++a)
+      rows[i].feature[terms.first_normal() - 1 + a] = float(ahead.downhill[int(a)]);
+    weights[i] = float(std::sqrt(ahead.fall));
   }
-
- private:
-  void look_at(std::size_t t, std::span<const std::uint32_t> samples, FitRow* rows) {
-    there_.resize(samples.size());
-    for (std::size_t i = 0; i < samples.size(); ++i) there_.set(i, points_.at(i) + steps_[t] * ahead_[i].step);
-    sample_values(near_field_.field(), there_, values_);
-    for (std::size_t i = 0; i < samples.size(); ++i) {
-      if (!(ahead_[i].fall > 0.0)) continue;
-      const auto isovalue = double(samples_.sites.isovalues[samples[i]]);
-      rows[i].openness[t] = NearField::openness_of(values_[i], ahead_[i], isovalue, steps_[t]);
-    }
+  for (std::size_t t = 0; use == NearFieldUse::kFitted && t < kOpennessTerms; ++t) {
+    looks.find_openness(steps[t]);
+    for (std::size_t i = 0; i < samples.size(); ++i) rows[i].openness[t] = looks.openness(i);
   }
-
-  const NearField& near_field_;
-  const SampleSet& samples_;
-  const FitRows::Terms& steps_;
-  Points points_;
-  Points there_;
-  PointSamples field_;
-  std::vector<double> values_;
-  std::vector<NearField::Ahead> ahead_;
-};
+}
 
 }  // namespace
 
@@ -94,11 +66,11 @@ void FitRows::measure(const NearField& near_field, const SampleSet& set, const T
         }
       }
     }
-    Looks looks(near_field, set, steps_);
+    SampleLooks looks(near_field, set.sites);
     const std::size_t end = starts_[block.end * std::size_t(cells.size().x)];
     for (std::size_t r = starts_[block.begin * std::size_t(cells.size().x)]; r < end; r += kTogether) {
       const std::size_t count = std::min(kTogether, end - r);
-      looks.look(samples().subspan(r, count), texels.terms(), use, &rows_[r], &weights_[r]);
+      look(samples().subspan(r, count), texels.terms(), steps_, use, looks, &rows_[r], &weights_[r]);
       for (std::size_t i = r; i < r + count; ++i) {
         for (std::size_t t = 0; t < kOpennessTerms; ++t) blocks[block.index][t] += double(rows_[i].openness[t]);
         blocks[block.index][kOpennessTerms] += double(weights_[i]);

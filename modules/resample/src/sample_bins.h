@@ -7,14 +7,15 @@
 #include <span>
 #include <vector>
 
+#include "bin_order.h"
 #include "metric.h"
 #include "neighbours.h"
 
 namespace isolux {
 
-/// Points sorted into cubic bins over the box from 0 to a far corner; those outside go to the nearest bin. Searches
-/// visit shells of bins about the query until no bin beyond can hold anything nearer (Bentley, Weide & Yao, "Optimal
-/// expected-time algorithms for closest point problems", 1980): expected constant time where points are spread evenly.
+/// Points in the order of bins. Searches visit shells of bins about the query until no bin beyond can hold anything
+/// nearer (Bentley, Weide & Yao, "Optimal expected-time algorithms for closest point problems", 1980): expected
+/// constant time where points are spread evenly.
 class SampleBins {
  public:
   SampleBins(std::span<const Point> points, const Point& far_corner, double points_a_bin);
@@ -23,7 +24,7 @@ class SampleBins {
   template <class Metric>
   void search(const Point& query, const NeighbourLimits& limits, std::vector<Neighbour>& found) const {
     NearestNeighbours nearest(limits, found);
-    const std::array<int, 3> centre = bin(query);
+    const std::array<int, 3> centre = bins_.bin(query);
     for (int r = 1;; ++r) {
       visit_shell<Metric>(query, centre, r, nearest);
       const float beyond = distance_beyond(query, centre, r);
@@ -39,17 +40,14 @@ class SampleBins {
     std::uint32_t sample;
   };
 
-  [[nodiscard]] std::array<int, 3> bin(const Point& p) const;
-  [[nodiscard]] std::size_t bin_offset(int i, int j, int k) const {
-    return (std::size_t(k) * std::size_t(size_[1]) + std::size_t(j)) * std::size_t(size_[0]) + std::size_t(i);
-  }
   /// Less than the distance to any point outside the cube of bins of half edge r; infinite if there are none.
   [[nodiscard]] float distance_beyond(const Point& query, const std::array<int, 3>& centre, int r) const;
 
   /// Less than the distance along an axis from the query to a bin.
   [[nodiscard]] float gap(const Point& query, std::size_t axis, int bin, int centre) const {
     if (bin == centre) return 0.0f;
-    const float to_bin = bin > centre ? float(bin) * side_ - query.x[axis] : query.x[axis] - float(bin + 1) * side_;
+    const float to_bin =
+        bin > centre ? float(bin) * bins_.side - query.x[axis] : query.x[axis] - float(bin + 1) * bins_.side;
     return std::max(to_bin - slack_, 0.0f);
   }
 
@@ -57,10 +55,10 @@ class SampleBins {
   template <class Metric>
   void visit_shell(const Point& query, const std::array<int, 3>& centre, int r, NearestNeighbours& nearest) const {
     const int first = std::max(centre[0] - r, 0);
-    const int last = std::min(centre[0] + r, size_[0] - 1);
-    for (int k = std::max(centre[2] - r, 0); k <= std::min(centre[2] + r, size_[2] - 1); ++k) {
+    const int last = std::min(centre[0] + r, bins_.size[0] - 1);
+    for (int k = std::max(centre[2] - r, 0); k <= std::min(centre[2] + r, bins_.size[2] - 1); ++k) {
       const float reach_z = Metric::axis(gap(query, 2, k, centre[2]));
-      for (int j = std::max(centre[1] - r, 0); j <= std::min(centre[1] + r, size_[1] - 1); ++j) {
+      for (int j = std::max(centre[1] - r, 0); j <= std::min(centre[1] + r, bins_.size[1] - 1); ++j) {
         const float reach_yz = Metric::join(Metric::axis(gap(query, 1, j, centre[1])), reach_z);
         if (reach_yz > nearest.bound()) continue;
         if (r == 1 || std::abs(j - centre[1]) == r || std::abs(k - centre[2]) == r) {
@@ -68,23 +66,21 @@ class SampleBins {
           continue;
         }
         if (centre[0] - r >= 0) visit_row<Metric>(query, first, first, j, k, nearest);
-        if (centre[0] + r < size_[0]) visit_row<Metric>(query, last, last, j, k, nearest);
+        if (centre[0] + r < bins_.size[0]) visit_row<Metric>(query, last, last, j, k, nearest);
       }
     }
   }
 
   template <class Metric>
   void visit_row(const Point& query, int first, int last, int j, int k, NearestNeighbours& nearest) const {
-    const std::uint32_t end = starts_[bin_offset(last, j, k) + 1];
-    for (std::uint32_t e = starts_[bin_offset(first, j, k)]; e < end; ++e) {
+    const std::uint32_t end = bins_.starts[bins_.offset(last, j, k) + 1];
+    for (std::uint32_t e = bins_.starts[bins_.offset(first, j, k)]; e < end; ++e) {
       nearest.offer(reach<Metric>(query, entries_[e].point), entries_[e].sample);
     }
   }
 
-  float side_ = 1.0f;
-  float slack_ = 0.0f;  ///< more than rounding can move a point across a bin's side
-  std::array<int, 3> size_{1, 1, 1};
-  std::vector<std::uint32_t> starts_;  ///< of each bin's entries, and the end; a row of bins is contiguous
+  BinOrder bins_;
+  float slack_;  ///< more than rounding can move a point across a bin's side
   std::vector<Entry> entries_;
 };
 

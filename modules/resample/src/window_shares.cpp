@@ -1,7 +1,6 @@
 #include "window_shares.h"
 
 #include <algorithm>
-#include <cmath>
 
 namespace isolux {
 namespace {
@@ -19,9 +18,9 @@ constexpr double kSharedNets = 0.5;
 
 WindowShares window_shares(const WindowsAround& around) {
   const WindowAround& narrowest = around.windows[0];
-  const double seen = (narrowest.left - std::max(0.0, around.product)) / (1.0 - std::min(narrowest.follows, 0.9));
+  const double seen = (around.left - std::max(0.0, around.product)) / (1.0 - std::min(around.follows, 0.9));
   const double noise = std::clamp(seen, 0.0, kVarianceFactor * around.variance);
-  const double least_missed = std::max(0.0, narrowest.left - noise * (1.0 - 2.0 * narrowest.follows + narrowest.noise));
+  const double least_missed = std::max(0.0, around.left - noise * (1.0 - 2.0 * around.follows + narrowest.noise));
   WindowShares shares{};
   double sum = 0.0;
   for (std::size_t k = 0; k <= kWindowCount; ++k) {
@@ -31,7 +30,8 @@ WindowShares window_shares(const WindowsAround& around) {
       const double more_missed = window.apart - kSharedNets * noise * window.noise_apart;
       risk = least_missed + std::max(0.0, more_missed) + noise * window.noise;
     }
-    shares[k] = std::pow(risk + kNoError, -6.0);
+    const double cube = (risk + kNoError) * (risk + kNoError) * (risk + kNoError);
+    shares[k] = 1.0 / (cube * cube);
     sum += shares[k];
   }
   for (double& share : shares) share /= sum;

@@ -10,15 +10,15 @@ inline constexpr double kNoError = 1e-14;  ///< a squared error: 1e-7, that of f
 
 /// Light fitted in windows of one width, means over the samples around one.
 struct WindowAround {
-  double left = 0.0;         ///< squares of what the fits leave of the samples
-  double apart = 0.0;        ///< squares of how far they are from those of the narrowest window
-  double follows = 0.0;      ///< the part of a sample in its own fit
+  double apart = 0.0;        ///< squares of how far the fits are from those of the narrowest window
   double noise = 0.0;        ///< a fit's variance where independent samples have one of 1
   double noise_apart = 0.0;  ///< likewise, of its difference from the narrowest window's
 };
 
 struct WindowsAround {
   std::array<WindowAround, kWindowCount> windows{};  ///< narrowest first
+  double left = 0.0;                                 ///< squares of what the narrowest's fits leave of the samples
+  double follows = 0.0;                              ///< the part of a sample in its own fit of these
   double product = 0.0;   ///< of what the narrowest leaves of two neighbours: what it misses, without noise
   double variance = 0.0;  ///< that samples say they have
 };

@@ -1,16 +1,15 @@
 // The wide products of the fit against the matrix that they are products of, at every instruction set.
 #include <gtest/gtest.h>
-#include <hwy/targets.h>
 #include <isolux/core/random.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <string>
 #include <vector>
 
 #include "wide/fit_products.h"
+#include "wide_targets.h"
 
 namespace isolux {
 namespace {
@@ -19,20 +18,6 @@ constexpr std::size_t kTexelsOfLines = 28;  // four lines of seven
 constexpr std::size_t kTerms = kNearFieldSteps.size();
 /// Some twenty products of numbers of size one are added in floats of 6e-8: 1e-6, with room.
 constexpr double kRounding = 1e-5;
-
-std::vector<std::int64_t> targets() {
-  std::vector<std::int64_t> all;
-  for (const std::int64_t t : {HWY_SCALAR, HWY_EMU128, HWY_SSE4, HWY_AVX2, HWY_AVX3, HWY_NEON})
-    if ((hwy::SupportedTargets() & t) != 0) all.push_back(t);
-  return all;
-}
-
-void choose_target(std::int64_t target) {
-  hwy::SetSupportedTargetsForTest(target);
-  hwy::GetChosenTarget().Update(hwy::SupportedTargets());
-}
-
-std::string target_name(const ::testing::TestParamInfo<std::int64_t>& target) { return hwy::TargetName(target.param); }
 
 /// A line of six cells, or of one where the axis has a single texel, with no to five rows each.
 struct Line {
@@ -135,8 +120,8 @@ struct Line {
 
 class FitProducts : public ::testing::TestWithParam<std::int64_t> {
  protected:
-  void SetUp() override { choose_target(GetParam()); }
-  void TearDown() override { choose_target(0); }
+  void SetUp() override { test::choose_target(GetParam()); }
+  void TearDown() override { test::choose_target(0); }
 
   template <class Check>
   static void for_each_line(const Check& check) {
@@ -232,7 +217,7 @@ TEST_P(FitProducts, HaveTheMatrixsBlocks) {
   });
 }
 
-INSTANTIATE_TEST_SUITE_P(EveryTarget, FitProducts, ::testing::ValuesIn(targets()), target_name);
+INSTANTIATE_TEST_SUITE_P(EveryTarget, FitProducts, ::testing::ValuesIn(test::wide_targets()), test::wide_target_name);
 
 }  // namespace
 }  // namespace isolux

@@ -18,7 +18,7 @@ namespace hn = hwy::HWY_NAMESPACE;
 #if defined(__clang__)
 #define ISOLUX_UNROLL _Pragma("clang loop unroll(full)")
 #elif defined(__GNUC__)
-#define ISOLUX_UNROLL _Pragma("GCC unroll 8")
+#define ISOLUX_UNROLL _Pragma("GCC unroll 16")
 #else
 #define ISOLUX_UNROLL
 #endif
