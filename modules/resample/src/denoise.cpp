@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <span>
 #include <utility>
@@ -20,15 +21,16 @@
 namespace isolux {
 namespace {
 
-// Samples; the light decides which of them is wide enough.
-constexpr std::array<std::size_t, kWindowCount> kWindows = {57, 120, 200};
+// Samples, whole shells of a lattice each; the light decides which of them is wide enough.
+constexpr std::array<std::size_t, kWindowCount> kWindows = {57, 123, 203};
 constexpr std::array<double, 3> kSteps = {1.0, 2.0, 4.0};  // of the openness, grid spacings
-// Of the whole range of isovalues in grid steps: a coordinate of the fit, hardly of the search.
+// Of the whole range of isovalues in grid steps: a coordinate of the fit, not of the search.
 constexpr double kIsovalueLength = 2.0;
 constexpr float kUnitLength = 2.0f;  // of normals and openness likewise
 constexpr float kRidge = 0.001f;
-constexpr std::size_t kTouching = 13;  // a sample and those about it
-constexpr std::size_t kAround = 20;    // where risks are averaged; more would blur the choice near edges
+constexpr std::size_t kTouching = 19;  // a sample and those about it
+constexpr std::size_t kAround = 27;    // where risks are averaged; more would blur the choice near edges
+constexpr float kOnALattice = 0.01f;   // of a bin's side: rounding, and no more
 /// Samples farther apart in light than so many standard errors are of two sides of an edge, and not fitted together.
 constexpr float kApart = 5.0f;
 /// Standard error, in parts of the brightest sample, that is left alone: a tenth of a step of eight bits.
@@ -61,10 +63,13 @@ class Denoiser {
     all_.side = bins.side;
     all_.channels = channels_;
     all_.looks.resize(order_.size() * all_.stride());
-    for (std::size_t a = 0; a < 4; ++a) {
+    for (std::size_t s = 0; s < order_.size(); ++s)
+      for (std::size_t a = 0; a < 4; ++a) all_.look(s)[a] = space.samples()[order_[s]].x[a] / bins.side;
+    for (std::size_t a = 0; a < 3; ++a) {
       all_.places[a].resize(order_.size() + wide::BinnedSamples::kPastTheEnd);
-      for (std::size_t s = 0; s < order_.size(); ++s) all_.places[a][s] = space.samples()[order_[s]].x[a] / bins.side;
+      for (std::size_t s = 0; s < order_.size(); ++s) all_.places[a][s] = all_.look(s)[a];
     }
+    if (are_on_a_lattice()) all_.stencil = wide::Stencil::of(all_.bins, kWindows.back());
     look(volume);
     const double unseen = kUnseen * double(*std::max_element(samples.radiance.begin(), samples.radiance.end()));
     limits_.unseen = float(unseen * unseen);
@@ -87,6 +92,20 @@ class Denoiser {
   }
 
  private:
+  /// Whether all samples are at the same place in their bins, and alone.
+  [[nodiscard]] bool are_on_a_lattice() const {
+    for (std::size_t b = 0; b + 1 < all_.starts.size(); ++b)
+      if (all_.starts[b + 1] - all_.starts[b] > 1) return false;
+    for (std::size_t a = 0; a < 3; ++a) {
+      const std::span<const float> places(all_.places[a].data(), order_.size());
+      const float first = places[0] - std::floor(places[0]);
+      if (!std::all_of(places.begin(), places.end(),
+                       [&](float at) { return std::fabs(at - std::floor(at) - first) < kOnALattice; }))
+        return false;
+    }
+    return true;
+  }
+
   /// Copies the samples in their order, with the openness in front of each.
   void look(const Volume& volume) {
     const NearField near_field(volume);
@@ -104,12 +123,12 @@ class Denoiser {
         const Vec3f& normal = given_.sites.normals[order_[s]];
         for (int a = 0; a < 3; ++a) look[wide::BinnedSamples::kNormal + std::size_t(a)] = normal[a];
         look[wide::BinnedSamples::kVariance] = given_.variance[order_[s]];
-        std::copy_n(&given_.radiance[order_[s] * channels_], channels_, look + wide::BinnedSamples::kLooks);
+        std::copy_n(&given_.radiance[order_[s] * channels_], channels_, look + wide::BinnedSamples::kLight);
       }
     });
   }
 
-  [[nodiscard]] const float* radiance(std::size_t s) const { return all_.look(s) + wide::BinnedSamples::kLooks; }
+  [[nodiscard]] const float* radiance(std::size_t s) const { return all_.look(s) + wide::BinnedSamples::kLight; }
   [[nodiscard]] const float* smooth(std::size_t window, std::size_t s) const {
     return &smooth_[(s * kWindows.size() + window) * channels_];
   }

@@ -6,6 +6,10 @@
 // After foreach_target.h.
 #include <hwy/highway.h>
 
+#include <algorithm>
+#include <compare>
+#include <cstdlib>
+
 #include "wide/denoise_kernels.h"
 #include "wide/nearest-inl.h"
 #include "wide/window_fits-inl.h"
@@ -26,6 +30,31 @@ HWY_AFTER_NAMESPACE();
 namespace isolux::wide {
 
 HWY_EXPORT(kernels_for);
+
+Stencil Stencil::of(const std::array<int, 3>& bins, std::size_t count) {
+  struct Bin {
+    std::int32_t distance_class, k, j, i;
+    auto operator<=>(const Bin&) const = default;
+  };
+  // A ball of `far` holds more than that many.
+  std::int32_t far = 1;
+  while (std::size_t(4 * far * far * far) < count) ++far;
+  std::vector<Bin> around;
+  for (std::int32_t k = -far; k <= far; ++k)
+    for (std::int32_t j = -far; j <= far; ++j)
+      for (std::int32_t i = -far; i <= far; ++i) around.push_back({class_of(float(k * k + j * j + i * i)), k, j, i});
+  std::sort(around.begin(), around.end());
+  Stencil stencil;
+  std::array<std::int32_t, 3> reached{};
+  for (std::size_t n = 0; n < count; ++n) {
+    const Bin& bin = around[n];
+    stencil.offsets.push_back((bin.k * bins[1] + bin.j) * bins[0] + bin.i);
+    reached = {std::max(reached[0], std::abs(bin.i)), std::max(reached[1], std::abs(bin.j)),
+               std::max(reached[2], std::abs(bin.k))};
+    stencil.far.push_back(reached);
+  }
+  return stencil;
+}
 
 DenoiseKernels denoise_kernels(std::size_t channels) { return HWY_DYNAMIC_DISPATCH(kernels_for)(channels); }
 

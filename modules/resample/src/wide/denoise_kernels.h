@@ -11,24 +11,38 @@
 
 namespace isolux::wide {
 
+/// The bins around one, nearest first, as nearest() orders samples that are at the same place in their bins.
+struct Stencil {
+  std::vector<std::int32_t> offsets;             ///< to their place in BinnedSamples::starts
+  std::vector<std::array<std::int32_t, 3>> far;  ///< how far this one and those before it reach along each axis
+
+  /// So many of `bins`.
+  static Stencil of(const std::array<int, 3>& bins, std::size_t count);
+};
+
 /// Samples in the order of bins (BinOrder). `places` go on for kPastTheEnd more, which vectors may read.
 struct BinnedSamples {
   static constexpr std::size_t kPastTheEnd = 16;
-  static constexpr std::size_t kLooks = 7;  ///< numbers of `looks` before the light
-  static constexpr std::size_t kNormal = 0;
-  static constexpr std::size_t kOpenness = 3;
-  static constexpr std::size_t kVariance = 6;
+  // Of a sample's look: ten coordinates, and what is fitted over them. Places are in sides of bins.
+  static constexpr std::size_t kPlace = 0;
+  static constexpr std::size_t kIsovalue = 3;
+  static constexpr std::size_t kNormal = 4;
+  static constexpr std::size_t kOpenness = 7;
+  static constexpr std::size_t kCoordinates = 10;
+  static constexpr std::size_t kVariance = 10;
+  static constexpr std::size_t kLight = 11;
 
   std::array<int, 3> bins{1, 1, 1};
   std::vector<std::uint32_t> starts;
   float side = 1.0f;                         ///< of a bin, mean grid spacings
-  std::array<std::vector<float>, 4> places;  ///< x, y, z and the scaled isovalue, in sides of bins
+  std::array<std::vector<float>, 3> places;  ///< x, y, z again
+  Stencil stencil;                           ///< where samples are at the same place in each bin, one in a bin at most
   std::size_t channels = 1;                  ///< 1 or 3
-  std::vector<float> looks;  ///< a sample's normal, openness, variance and light, one after the other, in whole fours
+  std::vector<float> looks;                  ///< one after the other, in whole fours
 
   [[nodiscard]] std::size_t size() const { return looks.size() / stride(); }
   [[nodiscard]] std::size_t stride() const { return stride(channels); }
-  [[nodiscard]] static constexpr std::size_t stride(std::size_t channels) { return (kLooks + channels + 3) / 4 * 4; }
+  [[nodiscard]] static constexpr std::size_t stride(std::size_t channels) { return (kLight + channels + 3) / 4 * 4; }
   [[nodiscard]] const float* look(std::size_t sample) const { return &looks[sample * stride()]; }
   [[nodiscard]] float* look(std::size_t sample) { return &looks[sample * stride()]; }
 };
@@ -61,8 +75,8 @@ struct WindowFits {
 };
 
 struct DenoiseKernels {
-  /// The `count` samples nearest to one, itself among them, or all; by distance in classes of a thirty-second of an
-  /// octave of its square, and within a class in the order of bins.
+  /// The `count` samples nearest to one in space, itself among them, or all; by distance in classes of a thirty-second
+  /// of an octave of its square, and within a class in the order of bins.
   void (*nearest)(const BinnedSamples& all, std::size_t sample, std::size_t count, NearSamples& near);
   /// \pre `near` has the last window's, if there are so many \return false, and nothing is fitted, where all are known
   bool (*fit)(const BinnedSamples& all, std::size_t sample, const NearSamples& near, const WindowLimits& limits,

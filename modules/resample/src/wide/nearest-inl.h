@@ -15,26 +15,17 @@
 #include <cstdint>
 
 #include "wide/denoise_kernels.h"
+#include "wide/distance_classes.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace isolux::wide {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// Squared distances rise from class to class, by a sixteenth of an octave from half a bin's side on: they are the
-/// upper bits of floats.
-inline constexpr int kClassShift = 19;
-inline constexpr std::int32_t kFirstClass = (127 - 2) << (23 - kClassShift);
-inline constexpr std::int32_t kClasses = 20 << (23 - kClassShift);
-
-inline std::int32_t class_of(float reach) {
-  return std::clamp((std::bit_cast<std::int32_t>(reach) >> kClassShift) - kFirstClass, 0, kClasses - 1);
-}
-
 /// Where a search looks: the samples within a distance of one.
 struct Ball {
   const BinnedSamples& all;
-  std::array<float, 4> centre;
+  std::array<float, 3> centre;
   float bound;  ///< its square
 
   /// The bins along an axis that a distance reaches.
@@ -61,12 +52,11 @@ HWY_INLINE std::size_t look_about(const Ball& ball, std::int32_t last, NearSampl
   const hn::RebindToUnsigned<decltype(f)> u;
   const std::size_t lanes = hn::Lanes(f);
   const BinnedSamples& all = ball.all;
-  std::array<const float*, 4> places;
-  for (std::size_t a = 0; a < 4; ++a) places[a] = all.places[a].data();
+  std::array<const float*, 3> places;
+  for (std::size_t a = 0; a < 3; ++a) places[a] = all.places[a].data();
   const auto x = hn::Set(f, ball.centre[0]);
   const auto y = hn::Set(f, ball.centre[1]);
   const auto z = hn::Set(f, ball.centre[2]);
-  const auto h = hn::Set(f, ball.centre[3]);
   const auto first_class = hn::Set(i, kFirstClass);
   const auto last_class = hn::Set(i, last);
   const auto from_zero = hn::Iota(u, 0u);
@@ -91,9 +81,7 @@ HWY_INLINE std::size_t look_about(const Ball& ball, std::int32_t last, NearSampl
         const auto dx = hn::Sub(hn::LoadU(f, places[0] + e), x);
         const auto dy = hn::Sub(hn::LoadU(f, places[1] + e), y);
         const auto dz = hn::Sub(hn::LoadU(f, places[2] + e), z);
-        const auto dh = hn::Sub(hn::LoadU(f, places[3] + e), h);
-        const auto reach =
-            hn::Add(hn::Add(hn::Mul(dx, dx), hn::Mul(dy, dy)), hn::Add(hn::Mul(dz, dz), hn::Mul(dh, dh)));
+        const auto reach = hn::Add(hn::Mul(dx, dx), hn::Add(hn::Mul(dy, dy), hn::Mul(dz, dz)));
         const auto klass = hn::Sub(hn::ShiftRight<kClassShift>(hn::BitCast(i, reach)), first_class);
         hn::StoreU(hn::Min(hn::Max(klass, hn::Zero(i)), last_class), i, near.classes.data() + count + (e - begin));
         hn::StoreU(hn::Add(from_zero, hn::Set(u, std::uint32_t(e))), u, near.candidates.data() + count + (e - begin));
@@ -104,9 +92,34 @@ HWY_INLINE std::size_t look_about(const Ball& ball, std::int32_t last, NearSampl
   return count;
 }
 
+/// Takes the stencil's samples. \return false where it leaves the box or bins are empty
+inline bool take_stencil(const BinnedSamples& all, std::size_t sample, std::size_t wanted, NearSamples& near) {
+  const Stencil& stencil = all.stencil;
+  if (wanted > stencil.offsets.size()) return false;
+  std::array<std::int32_t, 3> bin;
+  for (std::size_t a = 0; a < 3; ++a) {
+    bin[a] = std::int32_t(all.places[a][sample]);
+    const std::int32_t far = stencil.far[wanted - 1][a];
+    if (bin[a] < far || bin[a] >= all.bins[a] - far) return false;
+  }
+  if (near.samples.size() < wanted) near.samples.resize(wanted);
+  const std::uint32_t* const here =
+      &all.starts[std::size_t((bin[2] * all.bins[1] + bin[1])) * std::size_t(all.bins[0]) + std::size_t(bin[0])];
+  std::uint32_t* const samples = near.samples.data();
+  std::uint32_t full = 0;
+  for (std::size_t n = 0; n < wanted; ++n) {
+    const std::uint32_t* const there = here + stencil.offsets[n];
+    samples[n] = there[0];
+    full += there[1] - there[0];
+  }
+  near.count = wanted;
+  return full == wanted;
+}
+
 inline void nearest(const BinnedSamples& all, std::size_t sample, std::size_t wanted, NearSamples& near) {
-  std::array<float, 4> centre;
-  for (std::size_t a = 0; a < 4; ++a) centre[a] = all.places[a][sample];
+  if (!all.stencil.offsets.empty() && take_stencil(all, sample, wanted, near)) return;
+  std::array<float, 3> centre;
+  for (std::size_t a = 0; a < 3; ++a) centre[a] = all.places[a][sample];
   std::array<std::uint32_t, std::size_t(kClasses) + 1> starts;
   for (float bound = near.bound;; bound *= 1.5f) {
     // Samples of this class may be missing, those of lower ones are all there.

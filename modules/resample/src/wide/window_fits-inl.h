@@ -23,7 +23,7 @@ inline constexpr hn::CappedTag<float, 16> kF{};
 using F = hn::Vec<decltype(kF)>;
 
 /// Place, isovalue, normal, openness.
-inline constexpr std::size_t kCoordinates = 10;
+inline constexpr std::size_t kCoordinates = BinnedSamples::kCoordinates;
 inline constexpr std::size_t kUnknowns = kCoordinates + 1;
 /// A window for each lane, and one to spare.
 using Windows = Several<double, 4>;
@@ -32,17 +32,14 @@ using Windows = Several<double, 4>;
 template <std::size_t kChannels>
 struct Members {
   static constexpr std::size_t kMost = 256;
-  static constexpr std::size_t kStride = BinnedSamples::stride(kChannels);
-  static constexpr std::size_t kVariance = 4 + BinnedSamples::kVariance;
-  static constexpr std::size_t kLight = 4 + BinnedSamples::kLooks;
+  static constexpr std::size_t kNumbers = BinnedSamples::stride(kChannels);
 
   std::size_t count = 0;
-  std::size_t padded = 0;  ///< whole vectors; the rest repeats the sample itself
-  /// Coordinates, variance, light.
-  HWY_ALIGN float numbers[4 + kStride][kMost];
-  HWY_ALIGN float likeness[kMost];  ///< of light, by normals
+  std::size_t padded = 0;                    ///< whole vectors; the rest repeats the sample itself
+  HWY_ALIGN float numbers[kNumbers][kMost];  ///< of BinnedSamples::looks
+  HWY_ALIGN float likeness[kMost];           ///< of light, by normals
   HWY_ALIGN float distance[kMost];
-  HWY_ALIGN float weights[kMost];
+  HWY_ALIGN float weights[kWindowCount][kMost];
   HWY_ALIGN float narrowest[kMost];  ///< influence on the narrowest window's light
 
   void copy(const BinnedSamples& all, std::size_t sample, const NearSamples& near, std::size_t most);
@@ -80,13 +77,9 @@ HWY_INLINE void Members<kChannels>::copy(const BinnedSamples& all, std::size_t s
   padded = (count + 15) / 16 * 16;
   for (std::size_t n = 0; n < padded; n += 4) {
     const float* from[4];
-    for (std::size_t i = 0; i < 4; ++i) {
-      const std::size_t other = n + i < count ? near.samples[n + i] : sample;
-      for (std::size_t a = 0; a < 4; ++a) numbers[a][n + i] = all.places[a][other];
-      from[i] = &all.looks[other * kStride];
-    }
-    for (std::size_t a = 0; a < kStride; a += 4) {
-      take_four(from, &numbers[4 + a][n], kMost);
+    for (std::size_t i = 0; i < 4; ++i) from[i] = &all.looks[(n + i < count ? near.samples[n + i] : sample) * kNumbers];
+    for (std::size_t a = 0; a < kNumbers; a += 4) {
+      take_four(from, &numbers[a][n], kMost);
       for (const float*& f : from) f += 4;
     }
   }
@@ -94,9 +87,7 @@ HWY_INLINE void Members<kChannels>::copy(const BinnedSamples& all, std::size_t s
 
 template <std::size_t kChannels>
 HWY_INLINE float Members<kChannels>::measure(std::size_t sample, const BinnedSamples& all, const WindowLimits& limits) {
-  HWY_ALIGN float own[4 + kStride];
-  for (std::size_t a = 0; a < 4; ++a) own[a] = all.places[a][sample];
-  std::copy_n(&all.looks[sample * kStride], kStride, own + 4);
+  const float* const own = &all.looks[sample * kNumbers];
   auto likenesses = hn::Zero(kF);
   auto variances = hn::Zero(kF);
   for (std::size_t n = 0; n < padded; n += hn::Lanes(kF)) {
@@ -105,7 +96,7 @@ HWY_INLINE float Members<kChannels>::measure(std::size_t sample, const BinnedSam
     for (std::size_t a = 0; a < 4; ++a) {
       const auto way = hn::Mul(less_own(a), hn::Set(kF, all.side));
       hn::Store(way, kF, numbers[a] + n);
-      reach = hn::MulAdd(way, way, reach);
+      if (a < 3) reach = hn::MulAdd(way, way, reach);
     }
     hn::Store(hn::Sqrt(reach), kF, distance + n);
     auto cosine = hn::Zero(kF);
@@ -115,19 +106,21 @@ HWY_INLINE float Members<kChannels>::measure(std::size_t sample, const BinnedSam
     hn::Store(like, kF, likeness + n);
     for (std::size_t a = 4; a < kCoordinates; ++a)
       hn::Store(hn::Mul(less_own(a), hn::Set(kF, limits.unit)), kF, numbers[a] + n);
-    for (std::size_t c = 0; c < kChannels; ++c) hn::Store(less_own(kLight + c), kF, numbers[kLight + c] + n);
+    for (std::size_t c = 0; c < kChannels; ++c)
+      hn::Store(less_own(BinnedSamples::kLight + c), kF, numbers[BinnedSamples::kLight + c] + n);
     const auto counted = n + hn::Lanes(kF) <= count ? like
                          : n < count                ? hn::IfThenElseZero(hn::FirstN(kF, count - n), like)
                                                     : hn::Zero(kF);
     likenesses = hn::Add(likenesses, counted);
-    variances = hn::MulAdd(counted, hn::Load(kF, numbers[kVariance] + n), variances);
+    variances = hn::MulAdd(counted, hn::Load(kF, numbers[BinnedSamples::kVariance] + n), variances);
   }
   return hn::GetLane(hn::SumOfLanes(kF, variances)) / hn::GetLane(hn::SumOfLanes(kF, likenesses));
 }
 
 /// Sums over the first samples: moments of the coordinates and the light by weights. `to` has a lane a window.
 template <std::size_t kRow, std::size_t kChannels>
-HWY_INLINE void add_row(const Members<kChannels>& members, std::size_t padded, double* HWY_RESTRICT to) {
+HWY_INLINE void add_row(const Members<kChannels>& members, const float* weights, std::size_t padded,
+                        double* HWY_RESTRICT to) {
   constexpr std::size_t kColumns = kUnknowns - kRow;
   F sums[kColumns];
   F light[kChannels];
@@ -136,7 +129,7 @@ HWY_INLINE void add_row(const Members<kChannels>& members, std::size_t padded, d
   ISOLUX_UNROLL
   for (std::size_t c = 0; c < kChannels; ++c) light[c] = hn::Zero(kF);
   for (std::size_t n = 0; n < padded; n += hn::Lanes(kF)) {
-    auto w = hn::Load(kF, members.weights + n);
+    auto w = hn::Load(kF, weights + n);
     if constexpr (kRow == 0) {
       sums[0] = hn::Add(sums[0], w);
     } else {
@@ -149,7 +142,7 @@ HWY_INLINE void add_row(const Members<kChannels>& members, std::size_t padded, d
       sums[j] = hn::MulAdd(w, hn::Load(kF, members.numbers[kRow + j - 1] + n), sums[j]);
     ISOLUX_UNROLL
     for (std::size_t c = 0; c < kChannels; ++c)
-      light[c] = hn::MulAdd(w, hn::Load(kF, members.numbers[Members<kChannels>::kLight + c] + n), light[c]);
+      light[c] = hn::MulAdd(w, hn::Load(kF, members.numbers[BinnedSamples::kLight + c] + n), light[c]);
   }
   ISOLUX_UNROLL
   for (std::size_t j = 0; j < kColumns; ++j) to[4 * j] = double(hn::GetLane(hn::SumOfLanes(kF, sums[j])));
@@ -169,12 +162,13 @@ constexpr std::size_t row_start(std::size_t row) {
 template <std::size_t kChannels>
 struct Moments {
   static constexpr std::size_t kCount = row_start<kChannels>(kUnknowns);
-  HWY_ALIGN double sums[kCount][4];  ///< a lane a window
+  HWY_ALIGN double sums[kCount][4]{};  ///< a lane a window
 
   template <std::size_t... kRows>
   HWY_INLINE void add(const Members<kChannels>& members, std::size_t padded, std::size_t window,
                       std::index_sequence<kRows...> /*rows*/) {
-    (add_row<kRows, kChannels>(members, padded, &sums[row_start<kChannels>(kRows)][window]), ...);
+    (add_row<kRows, kChannels>(members, members.weights[window], padded, &sums[row_start<kChannels>(kRows)][window]),
+     ...);
   }
   [[nodiscard]] HWY_INLINE Windows at(std::size_t row, std::size_t column) const {
     return load<4>(sums[row_start<kChannels>(row) + column - row], 0.0);
@@ -284,7 +278,7 @@ HWY_INLINE Noise noise_of(Members<kChannels>& members, std::size_t padded, const
     ISOLUX_UNROLL
     for (std::size_t a = 0; a < kCoordinates; ++a)
       part = hn::MulAdd(slopes[a], hn::Load(kF, members.numbers[a] + n), part);
-    part = hn::Mul(part, hn::Load(kF, members.weights + n));
+    part = hn::Mul(part, hn::Load(kF, members.weights[window] + n));
     if (window == 0) hn::Store(part, kF, members.narrowest + n);
     own = hn::MulAdd(part, part, own);
     const auto more = hn::Sub(part, hn::Load(kF, members.narrowest + n));
@@ -302,7 +296,7 @@ HWY_INLINE void tell_sides(Members<kChannels>& members, float apart) {
   for (std::size_t n = 0; n < members.padded; n += hn::Lanes(kF)) {
     auto squares = hn::Zero(kF);
     for (std::size_t c = 0; c < kChannels; ++c) {
-      const auto less = hn::Load(kF, members.numbers[Members<kChannels>::kLight + c] + n);
+      const auto less = hn::Load(kF, members.numbers[BinnedSamples::kLight + c] + n);
       squares = hn::MulAdd(less, less, squares);
     }
     const auto ratio = hn::Mul(squares, scale);
@@ -311,23 +305,25 @@ HWY_INLINE void tell_sides(Members<kChannels>& members, float apart) {
   }
 }
 
-/// Weights of the first samples, falling with the distance to a quarter.
+/// Weights of the first samples in one window, falling with the distance to a quarter. \return whole vectors of them
 template <std::size_t kChannels>
-HWY_INLINE std::size_t weigh(Members<kChannels>& members, std::size_t count) {
+HWY_INLINE std::size_t weigh(Members<kChannels>& members, std::size_t window, std::size_t count) {
   const std::size_t lanes = hn::Lanes(kF);
+  const std::size_t whole = count / lanes * lanes;
   const std::size_t padded = (count + lanes - 1) / lanes * lanes;
+  const auto in_window = hn::FirstN(kF, count - whole);
   auto farthest = hn::Zero(kF);
-  for (std::size_t n = 0; n < count; n += lanes) {
-    const auto distance = hn::Load(kF, members.distance + n);
-    farthest = hn::Max(farthest, hn::IfThenElseZero(hn::FirstN(kF, count - n), distance));
-  }
+  for (std::size_t n = 0; n < whole; n += lanes) farthest = hn::Max(farthest, hn::Load(kF, members.distance + n));
+  if (whole < padded)
+    farthest = hn::Max(farthest, hn::IfThenElseZero(in_window, hn::Load(kF, members.distance + whole)));
   const float far = hn::GetLane(hn::MaxOfLanes(kF, farthest));
   const auto fall = hn::Set(kF, far > 0.0f ? -0.75f / far : 0.0f);
+  float* const weights = members.weights[window];
   for (std::size_t n = 0; n < padded; n += lanes) {
     const auto near = hn::MulAdd(fall, hn::Load(kF, members.distance + n), hn::Set(kF, 1.0f));
-    const auto w = hn::Mul(near, hn::Load(kF, members.likeness + n));
-    hn::Store(hn::IfThenElseZero(hn::FirstN(kF, count - n), w), kF, members.weights + n);
+    hn::Store(hn::Mul(near, hn::Load(kF, members.likeness + n)), kF, weights + n);
   }
+  if (whole < padded) hn::Store(hn::IfThenElseZero(in_window, hn::Load(kF, weights + whole)), kF, weights + whole);
   return padded;
 }
 
@@ -336,26 +332,24 @@ bool fit(const BinnedSamples& all, std::size_t sample, const NearSamples& near, 
          WindowFits& fits) {
   static thread_local Members<kChannels> members;
   members.copy(all, sample, near, limits.counts.back());
-  const float* const variances = members.numbers[members.kVariance];
+  const float* const variances = members.numbers[BinnedSamples::kVariance];
   if (std::all_of(variances, variances + members.count, [&](float v) { return v <= limits.unseen; })) return false;
   const float variance = members.measure(sample, all, limits);
   tell_sides(members, limits.apart * limits.apart * variance + float(kNoError));
 
-  Moments<kChannels> moments;
-  std::array<std::size_t, kWindowCount> counts;
-  std::fill_n(&moments.sums[0][0], 4 * moments.kCount, 0.0);
+  static thread_local Moments<kChannels> moments;  // the lane to spare stays 0
+  std::array<std::size_t, kWindowCount> padded;
   for (std::size_t w = 0; w < kWindowCount; ++w) {
-    counts[w] = std::min(limits.counts[w], members.count);
-    const std::size_t padded = weigh(members, counts[w]);
-    moments.add(members, padded, w, std::make_index_sequence<kUnknowns>());
+    padded[w] = weigh(members, w, std::min(limits.counts[w], members.count));
+    moments.add(members, padded[w], w, std::make_index_sequence<kUnknowns>());
   }
   std::fill_n(members.narrowest, members.padded, 0.0f);
   Solution<kChannels> solution;
   solution.solve(moments, double(limits.ridge));
-  const float* const own = &all.looks[sample * members.kStride + BinnedSamples::kLooks];
+  const float* const own = &all.looks[sample * members.kNumbers + BinnedSamples::kLight];
   for (std::size_t w = 0; w < kWindowCount; ++w) {
     for (std::size_t c = 0; c < kChannels; ++c) fits.light[w][c] = float(double(own[c]) + solution.light[c][w]);
-    const Noise noise = noise_of(members, weigh(members, counts[w]), solution, w);
+    const Noise noise = noise_of(members, padded[w], solution, w);
     fits.noise[w] = noise.own;
     fits.noise_apart[w] = noise.apart;
   }
