@@ -1,7 +1,6 @@
 #include "denoise.h"
 
 #include <isolux/core/parallel.h>
-#include <isolux/core/release.h>
 
 #include <algorithm>
 #include <array>
@@ -49,8 +48,12 @@ struct Findings {
 
 class Denoiser {
  public:
-  Denoiser(const Volume& volume, const SampleSet& samples, const Run& run)
-      : given_(samples),
+  /// `radiance` and `variance` are the samples', or parts of them.
+  Denoiser(const Volume& volume, const SampleSet& samples, const std::vector<float>& radiance,
+           const std::vector<float>& variance, const Run& run)
+      : sites_(samples.sites),
+        radiance_(radiance),
+        variance_(variance),
         channels_(std::size_t(samples.channels)),
         run_(run),
         kernels_(wide::denoise_kernels(channels_)) {
@@ -71,14 +74,14 @@ class Denoiser {
     }
     if (are_on_a_lattice()) all_.stencil = wide::Stencil::of(all_.bins, kWindows.back());
     look(volume);
-    const double unseen = kUnseen * double(*std::max_element(samples.radiance.begin(), samples.radiance.end()));
+    const double unseen = kUnseen * double(*std::max_element(radiance.begin(), radiance.end()));
     limits_.unseen = float(unseen * unseen);
   }
 
   [[nodiscard]] std::vector<float> light() {
     fit();
     multiply_rests();
-    std::vector<float> values = given_.radiance;
+    std::vector<float> values = radiance_;
     for_each(kAround, [&](std::size_t s, std::span<const std::uint32_t> around) {
       if (is_known(around)) return;
       const WindowShares shares = shares_of(s, around);
@@ -109,9 +112,9 @@ class Denoiser {
   /// Copies the samples in their order, with the openness in front of each.
   void look(const Volume& volume) {
     const NearField near_field(volume);
-    const double outwards = near_field.outwards(given_.sites);
+    const double outwards = near_field.outwards(sites_);
     parallel_blocks(order_.size(), 512, run_, "", [&](const Block& block) {
-      SampleLooks looks(near_field, given_.sites);
+      SampleLooks looks(near_field, sites_);
       looks.look(std::span(order_).subspan(block.begin, block.end - block.begin));
       for (std::size_t t = 0; t < kSteps.size(); ++t) {
         looks.find_openness(outwards * kSteps[t]);
@@ -120,10 +123,10 @@ class Denoiser {
       }
       for (std::size_t s = block.begin; s < block.end; ++s) {
         float* const look = all_.look(s);
-        const Vec3f& normal = given_.sites.normals[order_[s]];
+        const Vec3f& normal = sites_.normals[order_[s]];
         for (int a = 0; a < 3; ++a) look[wide::BinnedSamples::kNormal + std::size_t(a)] = normal[a];
-        look[wide::BinnedSamples::kVariance] = given_.variance[order_[s]];
-        std::copy_n(&given_.radiance[order_[s] * channels_], channels_, look + wide::BinnedSamples::kLight);
+        look[wide::BinnedSamples::kVariance] = variance_[order_[s]];
+        std::copy_n(&radiance_[order_[s] * channels_], channels_, look + wide::BinnedSamples::kLight);
       }
     });
   }
@@ -242,7 +245,9 @@ class Denoiser {
     return window_shares(around);
   }
 
-  const SampleSet& given_;
+  const Sites& sites_;
+  const std::vector<float>& radiance_;
+  const std::vector<float>& variance_;
   std::size_t channels_;
   const Run& run_;
   wide::DenoiseKernels kernels_;
@@ -255,24 +260,17 @@ class Denoiser {
 
 }  // namespace
 
-SampleSet denoised(const Volume& volume, const SampleSet& samples, const Run& run) {
-  SampleSet result = samples;
-  if (samples.lamps.empty()) {
-    result.radiance = Denoiser(volume, samples, run).light();
-    return result;
-  }
-  release(result.lamps);
-  release(result.lamps_variance);
-  result.radiance = samples.lamps;
-  result.variance = samples.lamps_variance;
-  const std::vector<float> lamps = Denoiser(volume, result, run).light();
-  for (std::size_t v = 0; v < lamps.size(); ++v) result.radiance[v] = samples.radiance[v] - samples.lamps[v];
-  for (std::size_t s = 0; s < samples.size(); ++s)
-    result.variance[s] = std::max(0.0f, samples.variance[s] - samples.lamps_variance[s]);
-  result.radiance = Denoiser(volume, result, run).light();
-  for (std::size_t v = 0; v < lamps.size(); ++v) result.radiance[v] += lamps[v];
-  result.variance = samples.variance;
-  return result;
+std::vector<float> denoised_light(const Volume& volume, const SampleSet& samples, const Run& run) {
+  if (samples.lamps.empty()) return Denoiser(volume, samples, samples.radiance, samples.variance, run).light();
+  std::vector<float> light = Denoiser(volume, samples, samples.lamps, samples.lamps_variance, run).light();
+  std::vector<float> rest(samples.radiance.size());
+  std::vector<float> variance(samples.size());
+  for (std::size_t v = 0; v < rest.size(); ++v) rest[v] = samples.radiance[v] - samples.lamps[v];
+  for (std::size_t s = 0; s < variance.size(); ++s)
+    variance[s] = std::max(0.0f, samples.variance[s] - samples.lamps_variance[s]);
+  rest = Denoiser(volume, samples, rest, variance, run).light();
+  for (std::size_t v = 0; v < rest.size(); ++v) light[v] += rest[v];
+  return light;
 }
 
 }  // namespace isolux

@@ -54,9 +54,9 @@ class Direct final : public Resampler {
     require_samples(samples);
     IlluminationGrid result = unlit_grid(texels, samples.channels);
     if (options_.denoise) {
-      place(volume, denoised(volume, samples, run), result, run);
+      place(volume, samples.sites, denoised_light(volume, samples, run), result, run);
     } else {
-      place(volume, samples, result, run);
+      place(volume, samples.sites, samples.radiance, result, run);
     }
     return told_by_bytes(std::move(result));
   }
@@ -66,7 +66,7 @@ class Direct final : public Resampler {
   void add_part(const Volume& volume, const SampleSet& samples, IlluminationGrid& texels,
                 const Run& run) const override {
     require_placed(samples);
-    place(volume, samples, texels, run);
+    place(volume, samples.sites, samples.radiance, texels, run);
   }
 
   [[nodiscard]] LampLight lamps() const override {
@@ -80,33 +80,34 @@ class Direct final : public Resampler {
   }
 
  private:
-  static void place(const Volume& volume, const SampleSet& samples, IlluminationGrid& result, const Run& run) {
+  static void place(const Volume& volume, const Sites& sites, const std::vector<float>& light, IlluminationGrid& result,
+                    const Run& run) {
     const Lattice& texels = result.lattice;
     const IndexToWorld to_texels = index_to_index(volume.lattice(), texels);
-    const auto channels = std::size_t(samples.channels);
+    const auto channels = std::size_t(result.channels);
     std::vector<std::size_t> repeated;
     std::vector<std::optional<std::size_t>> found(kSamplesAPass);
-    for (std::size_t first = 0; first < samples.size(); first += kSamplesAPass) {
-      const std::size_t count = std::min(kSamplesAPass, samples.size() - first);
+    for (std::size_t first = 0; first < sites.size(); first += kSamplesAPass) {
+      const std::size_t count = std::min(kSamplesAPass, sites.size() - first);
       parallel_blocks(count, kSamplesAPass / 16, run, "", [&](const Block& block) {
         for (std::size_t i = block.begin; i < block.end; ++i)
-          found[i] = texel_at(texels, to_texels.world(Vec3(samples.sites.positions[first + i])));
+          found[i] = texel_at(texels, to_texels.world(Vec3(sites.positions[first + i])));
       });
       for (std::size_t i = 0; i < count; ++i) {
-        if (!found[i]) throw InvalidInput(not_at_a_texel(samples, first + i));
+        if (!found[i]) throw InvalidInput(not_at_a_texel(sites, first + i));
         float* const values = &result.values[*found[i] * channels];
         if (std::isnan(*values)) {
-          std::copy_n(&samples.radiance[(first + i) * channels], channels, values);
+          std::copy_n(&light[(first + i) * channels], channels, values);
         } else {
           repeated.push_back(first + i);
         }
       }
     }
-    add_repeated(samples, to_texels, repeated, result);
+    add_repeated(sites, light, to_texels, repeated, result);
   }
 
-  static std::string not_at_a_texel(const SampleSet& samples, std::size_t s) {
-    const Vec3f& position = samples.sites.positions[s];
+  static std::string not_at_a_texel(const Sites& sites, std::size_t s) {
+    const Vec3f& position = sites.positions[s];
     return fmt::format(
         "sample {} at index ({}, {}, {}) is not at a texel centre: resampler direct needs a sampler that puts its "
         "sites there, such as texels; any other resampler takes scattered sites",
@@ -114,17 +115,17 @@ class Direct final : public Resampler {
   }
 
   /// Texels with several samples get their mean.
-  static void add_repeated(const SampleSet& samples, const IndexToWorld& to_texels,
+  static void add_repeated(const Sites& sites, const std::vector<float>& light, const IndexToWorld& to_texels,
                            const std::vector<std::size_t>& repeated, IlluminationGrid& grid) {
     if (repeated.empty()) return;
-    const auto channels = std::size_t(samples.channels);
+    const auto channels = std::size_t(grid.channels);
     std::vector<std::uint32_t> count(grid.lattice.count(), 1);
     for (const std::size_t s : repeated) {
-      const std::size_t texel = *texel_at(grid.lattice, to_texels.world(Vec3(samples.sites.positions[s])));
+      const std::size_t texel = *texel_at(grid.lattice, to_texels.world(Vec3(sites.positions[s])));
       const double share = 1.0 / double(++count[texel]);
       for (std::size_t c = 0; c < channels; ++c) {
         float& value = grid.values[texel * channels + c];
-        value = float(double(value) + share * (double(samples.radiance[s * channels + c]) - double(value)));
+        value = float(double(value) + share * (double(light[s * channels + c]) - double(value)));
       }
     }
   }
