@@ -30,6 +30,7 @@ constexpr float kRidge = 0.001f;
 constexpr std::size_t kTouching = 19;  // a sample and those about it
 constexpr std::size_t kAround = 27;    // where risks are averaged; more would blur the choice near edges
 constexpr float kOnALattice = 0.01f;   // of a bin's side: rounding, and no more
+constexpr double kSparse = 0.25;
 /// Samples farther apart in light than so many standard errors are of two sides of an edge, and not fitted together.
 constexpr float kApart = 5.0f;
 /// Standard error, in parts of the brightest sample, that is left alone: a tenth of a step of eight bits.
@@ -49,7 +50,7 @@ struct Findings {
 class Denoiser {
  public:
   /// `radiance` and `variance` are the samples', or parts of them.
-  Denoiser(const Volume& volume, const SampleSet& samples, const std::vector<float>& radiance,
+  Denoiser(const Volume& volume, const Lattice& texels, const SampleSet& samples, const std::vector<float>& radiance,
            const std::vector<float>& variance, const Run& run)
       : sites_(samples.sites),
         radiance_(radiance),
@@ -59,7 +60,9 @@ class Denoiser {
         kernels_(wide::denoise_kernels(channels_)) {
     const ShepardSpace space(volume, samples,
                              ShepardOptions{.k = int(kWindows.back()), .isovalue_length = kIsovalueLength});
-    BinOrder bins(space.samples(), space.far_corner(), 1.0);
+    // A bin for each texel gives a lattice its stencil; few samples are found sooner in larger ones.
+    const double lit = double(samples.size()) / double(texels.count());
+    BinOrder bins(space.samples(), space.far_corner(), lit > kSparse && lit < 1.0 ? lit : 1.0);
     order_ = std::move(bins.points);
     all_.bins = bins.size;
     all_.starts = std::move(bins.starts);
@@ -67,7 +70,8 @@ class Denoiser {
     all_.channels = channels_;
     all_.looks.resize(order_.size() * all_.stride());
     for (std::size_t s = 0; s < order_.size(); ++s)
-      for (std::size_t a = 0; a < 4; ++a) all_.look(s)[a] = space.samples()[order_[s]].x[a] / bins.side;
+      for (std::size_t a = 0; a < wide::BinnedSamples::kNormal; ++a)
+        all_.look(s)[a] = space.samples()[order_[s]].x[a] / bins.side;
     for (std::size_t a = 0; a < 3; ++a) {
       all_.places[a].resize(order_.size() + wide::BinnedSamples::kPastTheEnd);
       for (std::size_t s = 0; s < order_.size(); ++s) all_.places[a][s] = all_.look(s)[a];
@@ -260,15 +264,16 @@ class Denoiser {
 
 }  // namespace
 
-std::vector<float> denoised_light(const Volume& volume, const SampleSet& samples, const Run& run) {
-  if (samples.lamps.empty()) return Denoiser(volume, samples, samples.radiance, samples.variance, run).light();
-  std::vector<float> light = Denoiser(volume, samples, samples.lamps, samples.lamps_variance, run).light();
+std::vector<float> denoised_light(const Volume& volume, const SampleSet& samples, const Lattice& texels,
+                                  const Run& run) {
+  if (samples.lamps.empty()) return Denoiser(volume, texels, samples, samples.radiance, samples.variance, run).light();
+  std::vector<float> light = Denoiser(volume, texels, samples, samples.lamps, samples.lamps_variance, run).light();
   std::vector<float> rest(samples.radiance.size());
   std::vector<float> variance(samples.size());
   for (std::size_t v = 0; v < rest.size(); ++v) rest[v] = samples.radiance[v] - samples.lamps[v];
   for (std::size_t s = 0; s < variance.size(); ++s)
     variance[s] = std::max(0.0f, samples.variance[s] - samples.lamps_variance[s]);
-  rest = Denoiser(volume, samples, rest, variance, run).light();
+  rest = Denoiser(volume, texels, samples, rest, variance, run).light();
   for (std::size_t v = 0; v < rest.size(); ++v) light[v] += rest[v];
   return light;
 }

@@ -54,7 +54,7 @@ class Direct final : public Resampler {
     require_samples(samples);
     IlluminationGrid result = unlit_grid(texels, samples.channels);
     if (options_.denoise) {
-      place(volume, samples.sites, denoised_light(volume, samples, run), result, run);
+      place(volume, samples.sites, denoised_light(volume, samples, texels, run), result, run);
     } else {
       place(volume, samples.sites, samples.radiance, result, run);
     }

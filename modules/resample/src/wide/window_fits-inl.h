@@ -93,18 +93,19 @@ HWY_INLINE float Members<kChannels>::measure(std::size_t sample, const BinnedSam
   for (std::size_t n = 0; n < padded; n += hn::Lanes(kF)) {
     const auto less_own = [&](std::size_t a) { return hn::Sub(hn::Load(kF, numbers[a] + n), hn::Set(kF, own[a])); };
     auto reach = hn::Zero(kF);
-    for (std::size_t a = 0; a < 4; ++a) {
+    for (std::size_t a = 0; a < BinnedSamples::kNormal; ++a) {
       const auto way = hn::Mul(less_own(a), hn::Set(kF, all.side));
       hn::Store(way, kF, numbers[a] + n);
-      if (a < 3) reach = hn::MulAdd(way, way, reach);
+      if (a < BinnedSamples::kIsovalue) reach = hn::MulAdd(way, way, reach);
     }
     hn::Store(hn::Sqrt(reach), kF, distance + n);
     auto cosine = hn::Zero(kF);
-    for (std::size_t a = 4; a < 7; ++a) cosine = hn::MulAdd(hn::Load(kF, numbers[a] + n), hn::Set(kF, own[a]), cosine);
+    for (std::size_t a = BinnedSamples::kNormal; a < BinnedSamples::kOpenness; ++a)
+      cosine = hn::MulAdd(hn::Load(kF, numbers[a] + n), hn::Set(kF, own[a]), cosine);
     cosine = hn::Max(cosine, hn::Zero(kF));
     const auto like = hn::MulAdd(cosine, cosine, hn::Set(kF, 1e-6f));
     hn::Store(like, kF, likeness + n);
-    for (std::size_t a = 4; a < kCoordinates; ++a)
+    for (std::size_t a = BinnedSamples::kNormal; a < kCoordinates; ++a)
       hn::Store(hn::Mul(less_own(a), hn::Set(kF, limits.unit)), kF, numbers[a] + n);
     for (std::size_t c = 0; c < kChannels; ++c)
       hn::Store(less_own(BinnedSamples::kLight + c), kF, numbers[BinnedSamples::kLight + c] + n);
