@@ -7,7 +7,7 @@
 #include <hwy/highway.h>
 
 #include <algorithm>
-#include <compare>
+#include <array>
 #include <cstdlib>
 
 #include "wide/denoise_kernels.h"
@@ -32,10 +32,7 @@ namespace isolux::wide {
 HWY_EXPORT(kernels_for);
 
 Stencil Stencil::of(const std::array<int, 3>& bins, std::size_t count) {
-  struct Bin {
-    std::int32_t distance_class, k, j, i;
-    auto operator<=>(const Bin&) const = default;
-  };
+  using Bin = std::array<std::int32_t, 4>;  // class of its distance, z, y, x
   // A ball of `far` holds more than that many.
   std::int32_t far = 1;
   while (std::size_t(4 * far * far * far) < count) ++far;
@@ -47,10 +44,9 @@ Stencil Stencil::of(const std::array<int, 3>& bins, std::size_t count) {
   Stencil stencil;
   std::array<std::int32_t, 3> reached{};
   for (std::size_t n = 0; n < count; ++n) {
-    const Bin& bin = around[n];
-    stencil.offsets.push_back((bin.k * bins[1] + bin.j) * bins[0] + bin.i);
-    reached = {std::max(reached[0], std::abs(bin.i)), std::max(reached[1], std::abs(bin.j)),
-               std::max(reached[2], std::abs(bin.k))};
+    const auto [distance, k, j, i] = around[n];
+    stencil.offsets.push_back((k * bins[1] + j) * bins[0] + i);
+    reached = {std::max(reached[0], std::abs(i)), std::max(reached[1], std::abs(j)), std::max(reached[2], std::abs(k))};
     stencil.far.push_back(reached);
   }
   return stencil;
