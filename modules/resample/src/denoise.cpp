@@ -22,6 +22,7 @@ namespace {
 
 // Samples, whole shells of a lattice each; the light decides which of them is wide enough.
 constexpr std::array<std::size_t, kWindowCount> kWindows = {57, 123, 203};
+static_assert(kWindows.back() <= wide::WindowLimits::kMost);
 constexpr std::array<double, 3> kSteps = {1.0, 2.0, 4.0};  // of the openness, grid spacings
 // Of the whole range of isovalues in grid steps: a coordinate of the fit, not of the search.
 constexpr double kIsovalueLength = 2.0;
@@ -30,6 +31,7 @@ constexpr float kRidge = 0.001f;
 constexpr std::size_t kTouching = 19;  // a sample and those about it
 constexpr std::size_t kAround = 27;    // where risks are averaged; more would blur the choice near edges
 constexpr float kOnALattice = 0.01f;   // of a bin's side: rounding, and no more
+/// Part of the texels that are lit: where fewer are, a bin for each would be empty mostly.
 constexpr double kSparse = 0.25;
 /// Samples farther apart in light than so many standard errors are of two sides of an edge, and not fitted together.
 constexpr float kApart = 5.0f;

@@ -23,8 +23,7 @@ struct Stencil {
 /// Samples in the order of bins (BinOrder). `places` go on for kPastTheEnd more, which vectors may read.
 struct BinnedSamples {
   static constexpr std::size_t kPastTheEnd = 16;
-  // Of a sample's look: ten coordinates, and what is fitted over them. Places are in sides of bins.
-  static constexpr std::size_t kPlace = 0;
+  // Of a sample's look: ten coordinates, the place first, and what is fitted over them. Places are in sides of bins.
   static constexpr std::size_t kIsovalue = 3;
   static constexpr std::size_t kNormal = 4;
   static constexpr std::size_t kOpenness = 7;
@@ -59,7 +58,9 @@ struct NearSamples {
 
 /// Of the windows about a sample.
 struct WindowLimits {
-  std::array<std::size_t, kWindowCount> counts;  ///< samples, rising
+  static constexpr std::size_t kMost = 256;
+
+  std::array<std::size_t, kWindowCount> counts;  ///< samples, rising, at most kMost
   float apart;   ///< standard errors by which samples of one side of an edge differ at most
   float unseen;  ///< a window without a larger variance is left alone
   float ridge;   ///< in parts of the coordinates' own mean spread, pulls slopes to zero
