@@ -16,12 +16,23 @@ inline void choose_target(std::int64_t target) {
   hwy::GetChosenTarget().Update(hwy::SupportedTargets());
 }
 
-/// Those that the kernels are compiled for, among those of this machine.
+/// Those that the kernels are compiled for, among those of this machine, the best first.
 [[nodiscard]] inline std::vector<std::int64_t> wide_targets() {
   std::vector<std::int64_t> all;
-  for (const std::int64_t t : {HWY_SCALAR, HWY_EMU128, HWY_SSE4, HWY_AVX2, HWY_AVX3, HWY_NEON})
-    if ((hwy::SupportedTargets() & t) != 0) all.push_back(t);
+  for (std::int64_t left = hwy::SupportedTargets() & HWY_TARGETS; left != 0; left &= left - 1)
+    all.push_back(left & -left);
   return all;
+}
+
+/// Calls body with the kernels at each of them.
+template <class Body>
+void on_every_target(const Body& body) {
+  for (const std::int64_t target : wide_targets()) {
+    choose_target(target);
+    SCOPED_TRACE(hwy::TargetName(target));
+    body();
+  }
+  choose_target(0);
 }
 
 [[nodiscard]] inline std::string wide_target_name(const ::testing::TestParamInfo<std::int64_t>& info) {

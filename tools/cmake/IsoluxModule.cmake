@@ -19,8 +19,7 @@ set(ISOLUX_VERSION 0.1.0)
 option(ISOLUX_TESTS "Build the tests" ON)
 option(ISOLUX_BENCHES "Build the kernel benchmarks" OFF)
 option(ISOLUX_EXAMPLES "Build the examples of the modules' READMEs" ON)
-option(ISOLUX_UNITY "Compile several sources of a module as one: quicker, where headers cost more than code" OFF)
-option(ISOLUX_UNITY_TESTS "The same for test programs alone" OFF)
+option(ISOLUX_UNITY "Compile several sources of a library or program as one: half the time, as headers cost more than code" OFF)
 option(ISOLUX_WERROR "Treat warnings as errors" OFF)
 set(ISOLUX_TEST_FLAGS "" CACHE STRING "Compiler flags of test programs alone, such as -O1: their own code takes longer to compile than to run")
 set(ISOLUX_SANITIZE "" CACHE STRING "Sanitizers, such as address,undefined or thread")
@@ -51,12 +50,14 @@ function(isolux_flags target)
     -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor -Woverloaded-virtual -Wcast-qual -Wundef -Wimplicit-fallthrough
     $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict>  # GCC 12: false positive on "x" + std::string
     -ffp-contract=off                        # the same bits with and without FMA instructions
+    $<$<AND:$<CXX_COMPILER_ID:GNU>,$<BOOL:${ISOLUX_UNITY}>>:-Wno-subobject-linkage>  # a source's own names, though it is included
     $<$<BOOL:${ISOLUX_WERROR}>:-Werror>)
+  # Instruction sets that no kernel is compiled for: SSSE3, which few machines have without SSE4, and those whose vectors have no fixed size.
+  target_compile_definitions(${target} PRIVATE
+    "HWY_DISABLED_TARGETS=(HWY_SSSE3|HWY_SVE|HWY_SVE2|HWY_SVE_256|HWY_SVE2_128|HWY_RVV)")
+  set_target_properties(${target} PROPERTIES UNITY_BUILD ${ISOLUX_UNITY} UNITY_BUILD_BATCH_SIZE 6)
   if(target MATCHES "_tests$")
     target_compile_options(${target} PRIVATE ${ISOLUX_TEST_FLAGS})
-    if(ISOLUX_UNITY_TESTS)
-      set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 6)
-    endif()
   endif()
   if(ISOLUX_SANITIZE)
     target_compile_options(${target} PRIVATE -fsanitize=${ISOLUX_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer
@@ -141,13 +142,13 @@ Registry<@stage@> @catalogue@() {
   set(${out_packages} ${packages} PARENT_SCOPE)
 endfunction()
 
-# Highway compiles a file once for each instruction set by including it again, and clang 14 refuses to parse ITK 5.2: such files stay
-# translation units of their own.
-macro(_isolux_keep_wide_sources_alone)
+# Highway compiles a file once for each instruction set by including it again, clang 14 refuses to parse ITK 5.2, and a warning is silenced
+# before any header: such files stay translation units of their own.
+macro(_isolux_keep_special_sources_alone)
   file(GLOB_RECURSE all_sources CONFIGURE_DEPENDS src/*.cpp)
   foreach(source IN LISTS all_sources)
-    file(STRINGS ${source} is_wide REGEX "hwy/foreach_target|include <itk" LIMIT_COUNT 1)
-    if(is_wide)
+    file(STRINGS ${source} is_special REGEX "hwy/foreach_target|include <itk|pragma GCC diagnostic ignored" LIMIT_COUNT 1)
+    if(is_special)
       set_source_files_properties(${source} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
     endif()
   endforeach()
@@ -163,11 +164,9 @@ function(isolux_module name)
   foreach(module IN LISTS M_DEPENDS)
     isolux_need_module(${module})
   endforeach()
-  set(CMAKE_UNITY_BUILD ${ISOLUX_UNITY})
-  set(CMAKE_UNITY_BUILD_BATCH_SIZE 6)
 
   file(GLOB sources CONFIGURE_DEPENDS src/*.cpp)
-  _isolux_keep_wide_sources_alone()
+  _isolux_keep_special_sources_alone()
   set(backend_packages "")
   if(M_STAGE)
     _isolux_catalogue(${name} ${id} ${M_STAGE} ${M_CATALOGUE} "${M_DEFAULT}" "${M_BACKEND_PACKAGES}"

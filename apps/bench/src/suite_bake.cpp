@@ -118,7 +118,7 @@ void break_even(const Target& target, const SuiteContext& context, Table& table)
 }
 
 /// How often faster isolux is than another method at the error that the latter reaches at best.
-std::string comparison(const Plot& plot, const std::string& title) {
+std::string times_to_reach(const Plot& plot, const std::string& title) {
   const Series& ours = plot.series.front();
   std::string text;
   for (const Series& other : plot.series) {
@@ -216,7 +216,7 @@ SuiteReport run_bake(const SuiteContext& context) {
     const Target target = all[i].make(0.15 * seconds);
     context.say(target.title);
     Plot plot = curves(target, 0.65 * seconds, context, table);
-    report.highlights.push_back(comparison(plot, target.title));
+    report.highlights.push_back(times_to_reach(plot, target.title));
     report.figures.emplace_back(std::move(plot));
     if (target.bounces == 0) break_even(target, context, even);
   }

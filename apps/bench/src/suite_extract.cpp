@@ -166,7 +166,7 @@ Estimate openmesh_seconds(const IsoMesh& mesh) {
 }
 
 /// The default backend beside VTK at the largest size that both were measured at.
-std::string comparison(const Plot& plot, const std::string& ours) {
+std::string beside_flying_edges(const Plot& plot, const std::string& ours) {
   const auto named = [&](const std::string& name) {
     return std::find_if(plot.series.begin(), plot.series.end(), [&](const Series& s) { return s.name == name; });
   };
@@ -224,7 +224,7 @@ void speed(const SuiteContext& context, SuiteReport& report) {
   plot.series.push_back(std::move(kept));
   plot.series.push_back(std::move(vtk));
   plot.series.push_back(std::move(own));
-  report.highlights.push_back(comparison(plot, context.stages.extractors.info({}).name));
+  report.highlights.push_back(beside_flying_edges(plot, context.stages.extractors.info({}).name));
   report.figures.emplace_back(std::move(plot));
 }
 

@@ -219,7 +219,7 @@ void measure(const CellIntersector& intersector, const ProblemSet& set, const st
 }
 
 /// "Of the others only X was without a wrong hit" or the like, from the table.
-std::string comparison(const Table& table) {
+std::string errors_beside_others(const Table& table) {
   double ours = 0.0;
   double fewest = 1e30;
   std::string best;
@@ -280,7 +280,7 @@ SuiteReport run_intersect(const SuiteContext& context) {
   }
   // Printed so that no compiler drops the timed work.
   context.say(fmt::format("sum of all roots {:.6g}", sink));
-  report.highlights.push_back(comparison(figures.table));
+  report.highlights.push_back(errors_beside_others(figures.table));
   for (Plot& plot : figures.errors) report.figures.emplace_back(std::move(plot));
   report.figures.emplace_back(std::move(figures.wrong));
   report.figures.emplace_back(std::move(figures.table));

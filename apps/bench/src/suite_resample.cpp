@@ -10,7 +10,7 @@ namespace isolux::bench {
 namespace {
 
 /// A resampler with settings, as a curve of the plots: its points are the numbers of neighbours.
-struct Method {
+struct Resampling {
   std::string name;
   std::string backend;
   Settings settings;
@@ -24,9 +24,9 @@ bool has_option(const BackendInfo& info, std::string_view name) {
 
 /// Every backend that takes scattered samples. The Shepard family, whose backends agree to rounding, is varied for one
 /// of them and timed for the others.
-std::vector<Method> methods(const SuiteContext& context) {
+std::vector<Resampling> methods(const SuiteContext& context) {
   const std::vector<int> ks = context.pick<std::vector<int>>({11}, {4, 11, 32}, {1, 4, 11, 16, 32, 64});
-  std::vector<Method> list;
+  std::vector<Resampling> list;
   for (const BackendInfo& info : context.stages.resamplers.backends()) {
     if (!info.unavailable.empty() || info.name == "direct") continue;
     if (info.name == "cell_grid") {
@@ -71,7 +71,7 @@ struct Bench {
   [[nodiscard]] SampleSet samples(const std::string& sampler, std::size_t count) const {
     return exact_samples(test.truth, volume, all_sites(volume, sampler, count, context), test.noise, context.run.seed);
   }
-  [[nodiscard]] ResamplingResult error(const Method& method, int k, const SampleSet& samples) const {
+  [[nodiscard]] ResamplingResult error(const Resampling& method, int k, const SampleSet& samples) const {
     Settings settings = method.settings;
     if (k > 0) settings["k"] = std::to_string(k);
     return resampling_error(points, volume, samples, *context.stages.resamplers.create(method.backend, settings),
@@ -82,7 +82,7 @@ struct Bench {
 Cell none_if_zero(double value) { return value > 0.0 ? Cell(value) : Cell(kNone); }
 
 /// Adds one method's row to the table and point to its curve.
-void measure(const Bench& bench, const Method& method, const std::string& sampler, const SampleSet& samples,
+void measure(const Bench& bench, const Resampling& method, const std::string& sampler, const SampleSet& samples,
              const std::vector<int>& ks, Table& table, Series& series) {
   for (const int k : ks) {
     const ResamplingResult result = bench.error(method, k, samples);
@@ -95,7 +95,7 @@ void measure(const Bench& bench, const Method& method, const std::string& sample
 }
 
 /// The one k of a method that stands for it: a plane is fitted to more samples than a mean is taken of.
-int typical_k(const Method& method) {
+int typical_k(const Resampling& method) {
   if (method.neighbours.empty()) return 0;
   return method.backend == "moving_least_squares" && method.neighbours.size() > 3 ? 16 : 11;
 }
@@ -113,7 +113,7 @@ Plot error_over_time(const Bench& bench, std::size_t wanted, Table& table) {
   for (const std::string sampler : {"low_discrepancy", "random", "stratified"}) {
     const SampleSet samples = bench.samples(sampler, wanted);
     const bool is_plotted = sampler == "low_discrepancy";
-    for (const Method& method : methods(bench.context)) {
+    for (const Resampling& method : methods(bench.context)) {
       // Backends of one method agree to rounding: one of them is enough beside the first case.
       const bool same_method = method.backend == "brute_force" || method.backend == "cgal_kdtree";
       if (same_method && test.id != "smooth") continue;
@@ -135,9 +135,9 @@ Plot error_over_samples(const Bench& bench, double seconds, Table& rates) {
             .x_label = "samples",
             .y_label = "rms error of e at points"};
   plot.sentence = "Low-discrepancy sites; a curve that stops falling has reached what texels a cell apart can say.";
-  std::vector<Method> typical = methods(bench.context);
-  std::erase_if(typical, [](const Method& m) { return !m.is_typical; });
-  for (const Method& method : typical) plot.series.push_back({.name = method.name});
+  std::vector<Resampling> typical = methods(bench.context);
+  std::erase_if(typical, [](const Resampling& m) { return !m.is_typical; });
+  for (const Resampling& method : typical) plot.series.push_back({.name = method.name});
   Climb climb(seconds, 2.0);
   for (std::size_t count = 1000; count <= bench.context.pick(4000u, 32000u, 512000u) && climb.goes_on(); count *= 2) {
     const SampleSet samples = bench.samples("low_discrepancy", count);
@@ -156,7 +156,7 @@ Plot error_over_samples(const Bench& bench, double seconds, Table& rates) {
 }
 
 /// The most accurate method of a picture, and where the thesis's weights stand.
-std::string comparison(const Plot& plot, const std::string& title) {
+std::string most_accurate(const Plot& plot, const std::string& title) {
   const auto least = [](const Series& s) {
     return *std::min_element(s.points.begin(), s.points.end(),
                              [](const PlotPoint& a, const PlotPoint& b) { return a.y < b.y; });
@@ -196,7 +196,7 @@ SuiteReport run_resample(const SuiteContext& context) {
     Bench bench{.context = context, .test = test, .volume = sample_analytic_field(test.truth.field, n), .points = {}};
     bench.points = probe_points(test.truth, bench.volume, std::size_t(context.pick(2000, 8000, 20000)), context);
     Plot plot = error_over_time(bench, wanted, table);
-    report.highlights.push_back(comparison(plot, test.title));
+    report.highlights.push_back(most_accurate(plot, test.title));
     report.figures.emplace_back(std::move(plot));
     plots.push_back(error_over_samples(bench, context.budget.share(2 * (all.size() - c)), rates));
   }

@@ -238,7 +238,7 @@ void measure_real(const SuiteContext& context, Figures& figures) {
 }
 
 /// The default tracer's speed beside Embree's, largest and smallest ratio over the rows of one thread.
-std::string comparison(const Table& table, const std::string& tracer) {
+std::string beside_embree(const Table& table, const std::string& tracer) {
   double least = 1e30;
   double most = 0.0;
   double ours = 0.0;
@@ -277,7 +277,7 @@ SuiteReport run_trace(const SuiteContext& context) {
       "it. 64 rays from one site for every 64 cells or fewer.";
   if (!context.data_folder.empty() && context.effort != Effort::kSmoke) measure_real(context, figures);
   measure_sizes(context, figures);
-  report.highlights.push_back(comparison(figures.all, default_tracer(context)));
+  report.highlights.push_back(beside_embree(figures.all, default_tracer(context)));
   report.figures.emplace_back(std::move(figures.sizes));
   report.figures.emplace_back(std::move(figures.work));
   report.figures.emplace_back(std::move(figures.all));

@@ -19,7 +19,7 @@ constexpr const char* kChosen = "auto";
 /// What --texels auto lets the texels be wrong by: a little less than one a cell is on real volumes.
 constexpr double kTexelError = 0.05;
 
-struct Options {
+struct BakeOptions {
   VolumeOptions volume;
   TraceOptions trace;
   std::string output;
@@ -39,7 +39,7 @@ struct Options {
   bool compress = false;
 };
 
-BakeSettings bake_settings(const Options& options, const Stages& stages) {
+BakeSettings bake_settings(const BakeOptions& options, const Stages& stages) {
   BakeSettings settings;
   settings.trace = options.trace.settings();
   settings.sampler.name = options.sampler;
@@ -110,7 +110,7 @@ void say_of_memory(const BakeResult& result, const Session& session) {
 }
 
 /// --texels auto
-void choose_size(const Options& options, const Volume& volume, const Scene& scene, BakeSettings& settings,
+void choose_size(const BakeOptions& options, const Volume& volume, const Scene& scene, BakeSettings& settings,
                  Session& session) {
   const double target = options.rmse > 0.0 ? options.rmse : kTexelError;
   const TexelChoice chosen = session.timed(
@@ -121,7 +121,7 @@ void choose_size(const Options& options, const Volume& volume, const Scene& scen
                           chosen.texels.y, chosen.texels.z, chosen.error, target));
 }
 
-void run_bake(const Options& options, Session& session) {
+void run_bake(const BakeOptions& options, Session& session) {
   BakeSettings settings = bake_settings(options, session.stages);
   session.require_outputs({{"--output", options.output}, {"--error-grid", options.error_grid}},
                           {{"VOLUME", options.volume.source()}, {"--scene", options.trace.scene_path()}});
@@ -155,7 +155,7 @@ void run_bake(const Options& options, Session& session) {
 
 void add_bake_command(CLI::App& program, Session& session) {
   CLI::App& command = *program.add_subcommand("bake", "Light all level sets of a volume at once");
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<BakeOptions>();
   options->volume.add_to(command);
   command.add_option("-o,--output", options->output, "the light to write")->required()->type_name("LIGHT.nrrd");
   options->trace.add_to(command);

@@ -20,7 +20,7 @@
 namespace isolux {
 namespace {
 
-struct Options {
+struct ExtractOptions {
   VolumeOptions volume;
   LightOptions light;
   SideOption side;
@@ -50,7 +50,8 @@ Rgb8 colour(const Vec3f& radiance) { return {srgb_code(radiance.x), srgb_code(ra
 
 /// Light traced at the vertices, with a baked one as control variate if there is one.
 std::vector<Rgb8> exact_colours(const IsoMesh& mesh, const Volume& volume, const Scene& scene,
-                                const std::optional<LightFile>& baked, const Options& options, Session& session) {
+                                const std::optional<LightFile>& baked, const ExtractOptions& options,
+                                Session& session) {
   const PointLight light = session.timed("trace", [&] {
     const BackendChoice tracer{options.trace.tracer(), {}};
     TraceSettings settings = options.trace.settings();
@@ -69,7 +70,7 @@ std::vector<Rgb8> exact_colours(const IsoMesh& mesh, const Volume& volume, const
 }
 
 std::vector<Rgb8> baked_colours(const IsoMesh& mesh, const Volume& volume, const LightFile& light,
-                                const Options& options, const Run& run) {
+                                const ExtractOptions& options, const Run& run) {
   const float isovalue = options.isovalue;
   const LightReader reader(volume, options.light.of_side(light, options.side.or_outer()), TexelStorage::kBricks, run);
   const Vec3f albedo = light_albedo(light, isovalue);
@@ -87,13 +88,13 @@ NormalKind normal_kind(const std::string& name) {
 
 /// What the mesh's normals point to: the side whose light it shows, unless the user says otherwise. `lit`: the outer
 /// side of the light or the scene.
-OuterSide facing(const Options& options, OuterSide lit) {
+OuterSide facing(const ExtractOptions& options, OuterSide lit) {
   if (options.outer.empty()) return options.side.or_outer() == LevelSetSide::kInner ? opposite(lit) : lit;
   return options.outer == "higher" ? OuterSide::kHigher : OuterSide::kLower;
 }
 
 /// The scene given, else that of the light, where exact light is to agree with it.
-Scene scene_for(const Options& options, const std::optional<LightFile>& light) {
+Scene scene_for(const ExtractOptions& options, const std::optional<LightFile>& light) {
   if (options.exact_light && light && !options.trace.scene_given()) {
     auto scene = light_scene(*light);
     if (!scene) throw UsageError("--exact-light: the light does not tell its whole scene; give it with --scene");
@@ -117,7 +118,7 @@ struct Subject {
   const Volume* floats;  ///< null without light
 };
 
-void report_mesh(const IsoMesh& mesh, const Options& options, const std::string& backend, Session& session) {
+void report_mesh(const IsoMesh& mesh, const ExtractOptions& options, const std::string& backend, Session& session) {
   const MeshMeasures measures = session.timed("measure", [&] { return measure_mesh(mesh); });
   session.report["area"] = measures.area;
   session.report["volume"] = measures.volume;
@@ -131,7 +132,7 @@ void report_mesh(const IsoMesh& mesh, const Options& options, const std::string&
   session.say(fmt::format("{} triangles, {} vertices", mesh.n_faces(), mesh.n_vertices()));
 }
 
-void extract(const Subject& subject, const BackendChoice& choice, const Options& options, Session& session) {
+void extract(const Subject& subject, const BackendChoice& choice, const ExtractOptions& options, Session& session) {
   const VolumeView& volume = subject.volume;
   std::optional<LightFile> light;
   if (options.light.given()) light = options.light.read(*subject.floats, session);
@@ -166,7 +167,7 @@ void extract(const Subject& subject, const BackendChoice& choice, const Options&
   report_mesh(mesh, options, session.stages.extractors.info(choice.name).name, session);
 }
 
-void run_extract(const Options& options, Session& session) {
+void run_extract(const ExtractOptions& options, Session& session) {
   require_output(options.output);
   BackendChoice choice{options.backend, {}};
   apply_settings(options.set, {{"extractor", &choice.settings}});
@@ -189,7 +190,7 @@ void run_extract(const Options& options, Session& session) {
 
 void add_extract_command(CLI::App& program, Session& session) {
   CLI::App& command = *program.add_subcommand("extract", "One isosurface as a mesh, with its light as vertex colours");
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<ExtractOptions>();
   options->volume.add_to(command);
   add_isovalue(command, options->isovalue);
   command.add_option("-o,--output", options->output, "the mesh to write: .ply, .glb, .obj, .off or .stl")

@@ -18,7 +18,7 @@
 namespace isolux {
 namespace {
 
-struct Options {
+struct ProbeOptions {
   VolumeOptions volume;
   LightOptions light;
   SideOption side;
@@ -38,7 +38,7 @@ std::optional<Vec3> inside(const Lattice& lattice, const Vec3& world) {
   return index;
 }
 
-void run_probe(const Options& options, Session& session) {
+void run_probe(const ProbeOptions& options, Session& session) {
   if (!options.light.given()) throw UsageError("--light is required: the light to read at the points");
   session.require_outputs(
       {{"--output", options.output}},
@@ -75,7 +75,7 @@ void run_probe(const Options& options, Session& session) {
 
 void add_probe_command(CLI::App& program, Session& session) {
   CLI::App& command = *program.add_subcommand("probe", "The light at points: x,y,z (world) in; x,y,z,isovalue,e out");
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<ProbeOptions>();
   options->volume.add_to(command);
   options->light.add_to(command);
   options->side.add_to(command, "whose light: outer (default), or inner where the light has both");

@@ -27,7 +27,7 @@ constexpr double kHalfHeightFromWithin = 0.577;
 /// Pixels between the two pictures of --mode both.
 constexpr int kGap = 4;
 
-struct Options {
+struct RenderOptions {
   VolumeOptions volume;
   LightOptions light;
   SideOption side;
@@ -48,7 +48,7 @@ void expose(Image& image, double stops) {
 }
 
 /// Baked light as a shader. A light of both sides shows each where it is, whatever --outer says.
-Shader baked_shader(const Volume& volume, const LightFile& light, const Options& options, OuterSide outer,
+Shader baked_shader(const Volume& volume, const LightFile& light, const RenderOptions& options, OuterSide outer,
                     const Run& run) {
   const auto reading = [&](LevelSetSide side) -> LightAt {
     const auto reader =
@@ -66,7 +66,7 @@ Shader baked_shader(const Volume& volume, const LightFile& light, const Options&
 }
 
 /// At the middle of the box from outside, or out of --eye.
-Camera camera_of(const Options& options, const Lattice& volume, double aspect) {
+Camera camera_of(const RenderOptions& options, const Lattice& volume, double aspect) {
   const auto view = parse_numbers("--view", options.view, 2);
   Camera camera = orbit_camera(volume, view[0], view[1], aspect);
   if (options.eye.empty()) return camera;
@@ -90,7 +90,7 @@ void require_png(const std::string& path, int width, int height) {
   }
 }
 
-void run_render(const Options& options, Session& session) {
+void run_render(const RenderOptions& options, Session& session) {
   const auto [width, height] = parse_size2("--size", options.size);
   const auto view = parse_numbers("--view", options.view, 2);
   if (!options.eye.empty()) static_cast<void>(parse_numbers("--eye", options.eye, 3));
@@ -133,7 +133,7 @@ void run_render(const Options& options, Session& session) {
 
 void add_render_command(CLI::App& program, Session& session) {
   CLI::App& command = *program.add_subcommand("render", "A picture of one isosurface; needs no display and no GPU");
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<RenderOptions>();
   options->volume.add_to(command);
   add_isovalue(command, options->isovalue);
   command.add_option("-o,--output", options->output, "the picture to write")->required()->type_name("IMAGE.png");

@@ -1,5 +1,4 @@
 #include <gtest/gtest.h>
-#include <hwy/targets.h>
 #include <isolux/core/field_points.h>
 #include <isolux/core/random.h>
 
@@ -7,6 +6,8 @@
 #include <cmath>
 #include <cstdint>
 #include <vector>
+
+#include "wide_targets.h"
 
 namespace isolux {
 namespace {
@@ -58,17 +59,10 @@ void expect_what_the_field_says(const Index3& size) {
 }
 
 TEST(FieldPoints, SayWhatTheFieldSaysOfEachPointToTheBit) {
-  std::int64_t targets = hwy::SupportedTargets();
-  for (; targets != 0; targets &= targets - 1) {  // the best first
-    const std::int64_t target = targets & -targets;
-    hwy::SetSupportedTargetsForTest(target);
-    hwy::GetChosenTarget().Update(hwy::SupportedTargets());
-    SCOPED_TRACE(hwy::TargetName(target));
+  test::on_every_target([] {
     for (const Index3& size : {Index3(13, 9, 11), Index3(2, 2, 2), Index3(5, 2, 7), Index3(3, 4, 3)})
       expect_what_the_field_says(size);
-  }
-  hwy::SetSupportedTargetsForTest(0);
-  hwy::GetChosenTarget().Update(hwy::SupportedTargets());
+  });
 }
 
 TEST(FieldPoints, OfNoPointsAreNone) {

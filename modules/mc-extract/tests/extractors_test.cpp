@@ -14,7 +14,7 @@ namespace isolux {
 namespace {
 
 using namespace isolux::testing;
-using test::stress;
+using test::trials;
 
 std::vector<std::string> backend_names() {
   std::vector<std::string> names;
@@ -78,7 +78,7 @@ TEST_P(EveryExtractor, FacesAndNormalsLookToTheOuterSide) {
 }
 
 TEST_P(EveryExtractor, MakesAManifoldOfNoise) {
-  const int count = 1000 * stress();
+  const int count = trials(1000);
   for (int seed = 0; seed < count; ++seed) {
     const Volume volume = noise(random_size(seed), seed);
     IsoMesh mesh = extract(volume, 0.5f);
@@ -90,7 +90,7 @@ TEST_P(EveryExtractor, MakesAManifoldOfNoise) {
 }
 
 TEST_P(EveryExtractor, MakesAManifoldWithoutEmptyTrianglesOfTies) {
-  const int count = 500 * stress();
+  const int count = trials(500);
   for (int seed = 0; seed < count; ++seed) {
     const Volume volume = noise(random_size(seed), seed, 3);
     for (const OuterSide outer : {OuterSide::kLower, OuterSide::kHigher}) {
@@ -200,7 +200,7 @@ TEST_P(EveryExtractor, StopsWhenAsked) {
 }
 
 TEST_P(EveryExtractor, CapsAtTheBox) {
-  for (int seed = 0; seed < 200 * stress(); ++seed) {
+  for (int seed = 0; seed < trials(200); ++seed) {
     Volume volume = noise(random_size(seed), seed, seed % 2 == 0 ? 0 : 4);
     if (seed % 3 == 0) {
       Lattice lattice = volume.lattice();

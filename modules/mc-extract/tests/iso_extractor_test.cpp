@@ -9,10 +9,10 @@
 
 #include "build_mesh.h"
 #include "fields.h"
-#include "instruction_sets.h"
 #include "mesh_laws.h"
 #include "plain_marching_cubes.h"
 #include "row_march.h"
+#include "wide_targets.h"
 
 namespace isolux {
 namespace {
@@ -184,7 +184,7 @@ TEST(IsoExtractor, GivesTheSameBitsOnEveryInstructionSet) {
     const ExtractSettings settings{.isovalue = volume.values(0, 0, 0)};
     for (const IsoExtractor::Index index : {IsoExtractor::Index::kBricks, IsoExtractor::Index::kNone}) {
       const IndexedMesh expected = indexed(volume, settings, index);
-      on_every_instruction_set([&] { EXPECT_TRUE(identical(expected, indexed(volume, settings, index))); });
+      test::on_every_target([&] { EXPECT_TRUE(identical(expected, indexed(volume, settings, index))); });
     }
   }
 }

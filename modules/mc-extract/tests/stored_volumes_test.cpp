@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "fields.h"
-#include "instruction_sets.h"
 #include "mesh_laws.h"
+#include "wide_targets.h"
 
 namespace isolux {
 namespace {
@@ -129,7 +129,7 @@ TYPED_TEST(StoredVolumes, GiveTheSameBitsOnEveryInstructionSet) {
       return mesh;
     };
     const IndexedMesh expected = surface();
-    on_every_instruction_set([&] { EXPECT_TRUE(identical(expected, surface())); });
+    test::on_every_target([&] { EXPECT_TRUE(identical(expected, surface())); });
   }
 }
 

@@ -1,5 +1,4 @@
 // Compiled once per instruction set.
-#define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV)
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "wide/denoise_kernels.cpp"
 #include <hwy/foreach_target.h>
