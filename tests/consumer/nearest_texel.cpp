@@ -51,7 +51,8 @@ class NearestSample : public isolux::Resampler {
 
 }  // namespace
 
-int main() {
+int main(int /*argc*/, char** argv) {
+  if (isolux::read_volume(argv[1]).lattice().count() < 8) return 1;
   const isolux::Volume volume = isolux::read_volume("gen:sphere:8");
   isolux::Stages stages = isolux::builtin_stages();
   stages.resamplers.add<NearestSample>("nearest_sample", "the value of the nearest sample");

@@ -1,6 +1,26 @@
-set(prefix ${BUILD}/consumer-prefix)
-execute_process(COMMAND ${CMAKE_COMMAND} --install ${BUILD} --prefix ${prefix} OUTPUT_QUIET COMMAND_ERROR_IS_FATAL ANY)
-execute_process(COMMAND ${CMAKE_COMMAND} -S ${SOURCE} -B ${BUILD}/consumer -G ${GENERATOR} -D CMAKE_CXX_COMPILER=${CXX}
+# The package as others see it: everything installed, moved to another folder, and a program outside the tree built and run on it.
+set(prefix ${BUILD}/consumer/moved/prefix)
+file(REMOVE_RECURSE ${BUILD}/consumer)
+execute_process(COMMAND ${CMAKE_COMMAND} --install ${BUILD} --prefix ${BUILD}/consumer/prefix OUTPUT_QUIET COMMAND_ERROR_IS_FATAL ANY)
+file(MAKE_DIRECTORY ${BUILD}/consumer/moved)
+file(RENAME ${BUILD}/consumer/prefix ${prefix})
+execute_process(COMMAND ${CMAKE_COMMAND} -S ${SOURCE} -B ${BUILD}/consumer/build -G ${GENERATOR} -D CMAKE_CXX_COMPILER=${CXX}
                 -D CMAKE_PREFIX_PATH=${prefix} -D CMAKE_BUILD_TYPE=Release OUTPUT_QUIET COMMAND_ERROR_IS_FATAL ANY)
-execute_process(COMMAND ${CMAKE_COMMAND} --build ${BUILD}/consumer OUTPUT_QUIET COMMAND_ERROR_IS_FATAL ANY)
-execute_process(COMMAND ${BUILD}/consumer/consumer COMMAND_ERROR_IS_FATAL ANY)
+execute_process(COMMAND ${CMAKE_COMMAND} --build ${BUILD}/consumer/build OUTPUT_QUIET COMMAND_ERROR_IS_FATAL ANY)
+
+# A file of a format whose library is loaded when it is first needed, where it was built in.
+file(GLOB_RECURSE loaded ${prefix}/*isolux_volume_io_itk*)
+set(volume gen:sphere:8)
+if(loaded)
+  set(volume ${BUILD}/consumer/eight.mha)
+  file(WRITE ${volume} "ObjectType = Image\nNDims = 3\nDimSize = 2 2 2\nElementType = MET_UCHAR\nElementDataFile = LOCAL\n12345678")
+endif()
+execute_process(COMMAND ${BUILD}/consumer/build/consumer ${volume} COMMAND_ERROR_IS_FATAL ANY)
+execute_process(COMMAND ${prefix}/bin/isolux info ${volume} OUTPUT_QUIET COMMAND_ERROR_IS_FATAL ANY)
+if(loaded)
+  file(REMOVE ${loaded})
+  execute_process(COMMAND ${prefix}/bin/isolux info ${volume} RESULT_VARIABLE status OUTPUT_QUIET ERROR_VARIABLE says)
+  if(NOT status EQUAL 1 OR NOT says MATCHES "eight.mha: the library that reads it cannot be loaded: .*itk")
+    message(FATAL_ERROR "without its library: exit status ${status}, ${says}")
+  endif()
+endif()

@@ -5,6 +5,7 @@
 #                 [PUBLIC_PACKAGES packages...]     # seen in our public headers
 #                 [PACKAGES packages...]            # used in .cpp files only
 #                 [BACKEND_PACKAGES key:Package...] # a backend that is left out, with a word, where its package is missing
+#                 [LOADED keys...]                  # of those, whose package is linked by a shared library alone (src/loaded/KEY)
 #                 [TEST_PACKAGES packages...] [BENCH_PACKAGES packages...])
 #
 # Sources are src/*.cpp; each file of src/backends is one backend: its key is its file name, and the generated catalogue calls
@@ -16,6 +17,7 @@ include(GNUInstallDirs)
 get_filename_component(ISOLUX_ROOT ${CMAKE_CURRENT_LIST_DIR}/../.. ABSOLUTE)
 
 set(ISOLUX_VERSION 0.1.0)
+set(ISOLUX_LOADED_DIR ${CMAKE_INSTALL_LIBDIR}/isolux)  # of libraries that are loaded when first needed
 option(ISOLUX_TESTS "Build the tests" ON)
 option(ISOLUX_BENCHES "Build the kernel benchmarks" OFF)
 option(ISOLUX_EXAMPLES "Build the examples of the modules' READMEs" ON)
@@ -55,6 +57,10 @@ function(isolux_flags target)
   # Instruction sets that no kernel is compiled for: SSSE3, which few machines have without SSE4, and those whose vectors have no fixed size.
   target_compile_definitions(${target} PRIVATE
     "HWY_DISABLED_TARGETS=(HWY_SSSE3|HWY_SVE|HWY_SVE2|HWY_SVE_256|HWY_SVE2_128|HWY_RVV)")
+  # One search path for where it is built and where it is installed: CMake pads those it edits, and an empty entry means the current folder.
+  file(RELATIVE_PATH loaded ${CMAKE_CURRENT_BINARY_DIR} ${CMAKE_BINARY_DIR}/${ISOLUX_LOADED_DIR})
+  set_target_properties(${target} PROPERTIES BUILD_WITH_INSTALL_RPATH ON
+    INSTALL_RPATH "$ORIGIN/../${ISOLUX_LOADED_DIR};$ORIGIN/${loaded}")
   set_target_properties(${target} PROPERTIES UNITY_BUILD ${ISOLUX_UNITY} UNITY_BUILD_BATCH_SIZE 6)
   if(target MATCHES "_tests$")
     target_compile_options(${target} PRIVATE ${ISOLUX_TEST_FLAGS})
@@ -85,14 +91,34 @@ function(isolux_need_module name)
   endif()
 endfunction()
 
+# The shared library of src/loaded/KEY, which the backend KEY loads by its file name, ISOLUX_KEY_LIBRARY, when it is first needed: programs
+# begin without its package. It is found by the program's RUNPATH, which ours have from isolux_flags and others' from the
+# installed module.
+function(_isolux_loaded_library name id key package)
+  set(library isolux_${id}_${key})
+  file(GLOB sources CONFIGURE_DEPENDS src/loaded/${key}/*.cpp)
+  add_library(${library} MODULE ${sources})
+  set_target_properties(${library} PROPERTIES OUTPUT_NAME ${library}-${ISOLUX_VERSION} LIBRARY_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/${ISOLUX_LOADED_DIR})
+  target_link_libraries(${library} PRIVATE isolux::core)
+  isolux_flags(${library})
+  isolux_link(${library} PRIVATE fmt ${package})
+  string(TOUPPER ${key} macro)
+  target_include_directories(${library} PRIVATE include)
+  target_compile_definitions(isolux_${id} PRIVATE ISOLUX_${macro}_LIBRARY="$<TARGET_FILE_NAME:${library}>")
+  target_link_libraries(isolux_${id} PRIVATE ${CMAKE_DL_LIBS})
+  add_dependencies(isolux_${id} ${library})
+  target_link_options(isolux_${id} INTERFACE "$<INSTALL_INTERFACE:LINKER:-rpath,$<INSTALL_PREFIX>/${ISOLUX_LOADED_DIR}>")
+  install(TARGETS ${library} LIBRARY DESTINATION ${ISOLUX_LOADED_DIR} COMPONENT ${name})
+endfunction()
+
 # Writes the function that fills a registry: one call per file of src/backends.
-function(_isolux_catalogue name id stage catalogue default optional out_sources out_packages)
+function(_isolux_catalogue name id stage catalogue default optional out_sources out_found)
   file(GLOB files CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/src/backends/*.cpp)
   list(SORT files)
   set(declarations "")
   set(calls "")
   set(sources "")
-  set(packages "")
+  set(found_pairs "")
   foreach(file IN LISTS files)
     get_filename_component(key ${file} NAME_WE)
     set(missing "")
@@ -106,7 +132,7 @@ function(_isolux_catalogue name id stage catalogue default optional out_sources 
         else()
           isolux_find_package(${package} found)
           if(found)
-            list(APPEND packages ${package})
+            list(APPEND found_pairs ${pair})
           else()
             set(missing "package ${package} was not found when isolux was built")
           endif()
@@ -139,7 +165,7 @@ Registry<@stage@> @catalogue@() {
 }  // namespace isolux
 ")
   set(${out_sources} ${sources} ${generated} PARENT_SCOPE)
-  set(${out_packages} ${packages} PARENT_SCOPE)
+  set(${out_found} ${found_pairs} PARENT_SCOPE)
 endfunction()
 
 # Highway compiles a file once for each instruction set by including it again, clang 14 refuses to parse ITK 5.2, and a warning is silenced
@@ -156,7 +182,7 @@ endmacro()
 
 function(isolux_module name)
   cmake_parse_arguments(M "" "STAGE;CATALOGUE;DEFAULT"
-    "DEPENDS;PUBLIC_PACKAGES;PACKAGES;BACKEND_PACKAGES;TEST_PACKAGES;BENCH_PACKAGES" ${ARGN})
+    "DEPENDS;PUBLIC_PACKAGES;PACKAGES;BACKEND_PACKAGES;LOADED;TEST_PACKAGES;BENCH_PACKAGES" ${ARGN})
   if(M_UNPARSED_ARGUMENTS)
     message(FATAL_ERROR "isolux_module(${name}): unknown arguments ${M_UNPARSED_ARGUMENTS}")
   endif()
@@ -167,10 +193,9 @@ function(isolux_module name)
 
   file(GLOB sources CONFIGURE_DEPENDS src/*.cpp)
   _isolux_keep_special_sources_alone()
-  set(backend_packages "")
+  set(backends "")
   if(M_STAGE)
-    _isolux_catalogue(${name} ${id} ${M_STAGE} ${M_CATALOGUE} "${M_DEFAULT}" "${M_BACKEND_PACKAGES}"
-      backend_sources backend_packages)
+    _isolux_catalogue(${name} ${id} ${M_STAGE} ${M_CATALOGUE} "${M_DEFAULT}" "${M_BACKEND_PACKAGES}" backend_sources backends)
     list(APPEND sources ${backend_sources})
   endif()
   file(GLOB_RECURSE headers CONFIGURE_DEPENDS include/*.h)
@@ -183,6 +208,17 @@ function(isolux_module name)
   target_compile_features(${lib} PUBLIC cxx_std_20)
   isolux_flags(${lib})
   isolux_link(${lib} PUBLIC ${M_PUBLIC_PACKAGES})
+  set(backend_packages "")
+  foreach(pair IN LISTS backends)
+    string(REPLACE ":" ";" parts ${pair})
+    list(GET parts 0 key)
+    list(GET parts 1 package)
+    if(key IN_LIST M_LOADED)
+      _isolux_loaded_library(${name} ${id} ${key} ${package})
+    else()
+      list(APPEND backend_packages ${package})
+    endif()
+  endforeach()
   isolux_link(${lib} PRIVATE ${M_PACKAGES} ${backend_packages})
   foreach(module IN LISTS M_DEPENDS)
     string(REPLACE "-" "_" dep ${module})

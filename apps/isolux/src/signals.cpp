@@ -4,7 +4,6 @@
 #include <unistd.h>
 
 #include <csignal>
-#include <ctime>
 
 namespace isolux {
 
@@ -15,13 +14,17 @@ SignalWatcher::SignalWatcher() {
   sigaddset(&signals, SIGTERM);
   pthread_sigmask(SIG_BLOCK, &signals, nullptr);
   thread_ = std::jthread([this, signals](const std::stop_token& end) {
-    const timespec moment{.tv_sec = 0, .tv_nsec = 50'000'000};
-    while (!end.stop_requested()) {
-      if (sigtimedwait(&signals, nullptr, &moment) < 0) continue;
+    int signal = 0;
+    while (sigwait(&signals, &signal) == 0 && !end.stop_requested()) {
       if (stop_.stop_requested()) _exit(130);
       stop_.request_stop();
     }
   });
+}
+
+SignalWatcher::~SignalWatcher() {
+  thread_.request_stop();
+  pthread_kill(thread_.native_handle(), SIGTERM);  // which is blocked there, and ends its waiting
 }
 
 }  // namespace isolux

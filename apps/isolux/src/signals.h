@@ -10,6 +10,9 @@ namespace isolux {
 class SignalWatcher {
  public:
   SignalWatcher();
+  ~SignalWatcher();
+  SignalWatcher(const SignalWatcher&) = delete;
+  SignalWatcher& operator=(const SignalWatcher&) = delete;
   [[nodiscard]] std::stop_token token() const { return stop_.get_token(); }
 
  private:

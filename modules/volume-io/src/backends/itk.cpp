@@ -1,158 +1,31 @@
+#include "../child_process.h"
 #include "../files.h"
 #include "../format_checks.h"
-#include "../itk_pixels.h"
+#include "../itk_request.h"
 #include "../make_volume.h"
-#include "../slice_stack.h"
+#include "../received_volume.h"
 
+#include <dlfcn.h>
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 #include <isolux/core/error.h>
 #include <isolux/volume_io/volume_reader.h>
-#include <itkGDCMImageIO.h>
-#include <itkMetaImageIO.h>
-#include <itkMultiThreaderBase.h>
-#include <itkNiftiImageIO.h>
-#include <itkTIFFImageIO.h>
-#include <itkVTKImageIO.h>
 
-#include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <optional>
-#include <set>
 
 namespace isolux {
 namespace {
 
+using detail::ItkEntry;
+using detail::ItkFormat;
 using detail::SendBytes;
 constexpr std::string_view kAnatomical = "left-posterior-superior";
 constexpr std::string_view kPlain = "3D-right-handed";
 
-// ---- in the child process ----
-
-ScalarType scalar_type(const std::string& path, const itk::ImageIOBase& io) {
-  const auto bytes = io.GetComponentSize();
-  using Kind = itk::IOComponentEnum;
-  const auto by_size = [&](ScalarType one, ScalarType two, ScalarType four, ScalarType eight) {
-    return bytes == 1 ? one : bytes == 2 ? two : bytes == 4 ? four : eight;
-  };
-  switch (io.GetComponentType()) {
-    case Kind::UCHAR:
-    case Kind::USHORT:
-    case Kind::UINT:
-    case Kind::ULONG:
-    case Kind::ULONGLONG:
-      return by_size(ScalarType::kUint8, ScalarType::kUint16, ScalarType::kUint32, ScalarType::kUint64);
-    case Kind::CHAR:
-    case Kind::SHORT:
-    case Kind::INT:
-    case Kind::LONG:
-    case Kind::LONGLONG:
-      return by_size(ScalarType::kInt8, ScalarType::kInt16, ScalarType::kInt32, ScalarType::kInt64);
-    case Kind::FLOAT:
-      return ScalarType::kFloat32;
-    case Kind::DOUBLE:
-      return ScalarType::kFloat64;
-    default:
-      throw InvalidInput(fmt::format("{}: ITK does not know the type of its voxels", path));
-  }
-}
-
-template <class Io>
-typename Io::Pointer open(const std::string& path) {
-  const auto io = Io::New();
-  io->SetFileName(path);
-  try {
-    io->ReadImageInformation();
-  } catch (const itk::ExceptionObject& problem) {
-    throw IoError(fmt::format("{}: ITK cannot read it: {}", path, problem.GetDescription()));
-  }
-  if (io->GetNumberOfComponents() != 1)
-    throw InvalidInput(fmt::format("{}: {} numbers a voxel: a volume has one", path, io->GetNumberOfComponents()));
-  return io;
-}
-
-Lattice lattice_of(const std::string& path, const itk::ImageIOBase& io) {
-  Lattice lattice;
-  lattice.size = Index3(1);
-  for (unsigned a = 0; a < io.GetNumberOfDimensions(); ++a) {
-    const auto size = io.GetDimensions(a);
-    if (a >= 3) {
-      if (size > 1)
-        throw InvalidInput(fmt::format("{}: {} samples on axis {}: a volume has 3 axes", path, size, a + 1));
-      continue;
-    }
-    lattice.size[int(a)] = int(size);
-    const auto direction = io.GetDirection(a);
-    Vec3& axis = lattice.frame.axes[int(a)];
-    for (unsigned c = 0; c < 3; ++c)
-      axis[int(c)] = (c < direction.size() ? direction[c] : (a == c ? 1.0 : 0.0)) * io.GetSpacing(a);
-    lattice.frame.origin[int(a)] = io.GetOrigin(a);
-  }
-  return lattice;
-}
-
-void send_pixels(const std::string& path, itk::ImageIOBase& io, const SendBytes& send) {
-  itk::ImageIORegion region(io.GetNumberOfDimensions());
-  for (unsigned a = 0; a < io.GetNumberOfDimensions(); ++a) region.SetSize(a, io.GetDimensions(a));
-  io.SetIORegion(region);
-  std::vector<std::byte> pixels(std::size_t(io.GetImageSizeInBytes()));
-  try {
-    io.Read(pixels.data());
-  } catch (const itk::ExceptionObject& problem) {
-    throw IoError(fmt::format("{}: ITK cannot read it: {}", path, problem.GetDescription()));
-  }
-  detail::send_block(send, scalar_type(path, io), pixels);
-}
-
-template <class Io>
-void send_file(const std::string& path, const SendBytes& send) {
-  const auto io = open<Io>(path);
-  detail::send_volume(send, {.lattice = lattice_of(path, *io), .stored_type = scalar_type(path, *io), .blocks = 1});
-  send_pixels(path, *io, send);
-}
-
-std::vector<detail::Slice> dicom_slices(const std::string& source, const std::vector<std::string>& files) {
-  std::vector<detail::Slice> slices;
-  std::set<std::string> series;
-  for (const auto& file : files) {
-    const auto io = open<itk::GDCMImageIO>(file);
-    std::string id;
-    io->GetValueFromTag("0020|000e", id);
-    series.insert(id.c_str());
-    slices.push_back({.path = file, .lattice = lattice_of(file, *io), .type = scalar_type(file, *io)});
-  }
-  if (series.size() > 1)
-    throw InvalidInput(fmt::format("{}: {} DICOM series in one folder ({}): keep one in it", source, series.size(),
-                                   fmt::join(series, ", ")));
-  return slices;
-}
-
-void send_dicom(const std::string& source, const std::vector<std::string>& files, std::optional<double> gap,
-                const SendBytes& send) {
-  auto slices = dicom_slices(source, files);
-  const Lattice lattice = detail::stack_slices(source, slices, gap);
-  const bool one_type =
-      std::all_of(slices.begin(), slices.end(), [&](const detail::Slice& s) { return s.type == slices[0].type; });
-  detail::send_volume(send, {.lattice = lattice,
-                             .stored_type = one_type ? slices.front().type : ScalarType::kFloat32,
-                             .blocks = slices.size()});
-  for (const auto& slice : slices) send_pixels(slice.path, *open<itk::GDCMImageIO>(slice.path), send);
-}
-
-void send_tiffs(const std::vector<std::string>& files, Index3 size, const SendBytes& send) {
-  const ScalarType first = scalar_type(files.front(), *open<itk::TIFFImageIO>(files.front()));
-  detail::send_volume(send, {.lattice = {.size = size, .frame = {}}, .stored_type = first, .blocks = files.size()});
-  for (const auto& file : files) send_pixels(file, *open<itk::TIFFImageIO>(file), send);
-}
-
-// ---- in the program ----
-
-/// What to read, by our own look at it, and the work that a child does to read it.
+/// What to read, by our own look at it.
 struct Plan {
-  Index3 size{0};
+  detail::ItkRequest request;
   std::string_view space;
-  std::function<void(const SendBytes&)> work;
 };
 
 Plan tiff_plan(const std::string& source, const std::vector<std::string>& files, const ReadOptions& options) {
@@ -167,8 +40,7 @@ Plan tiff_plan(const std::string& source, const std::vector<std::string>& files,
                                      page.x, page.y, page.z, files.front(), first.x, first.y, first.z));
     ++size.z;
   }
-  return {
-      .size = size, .space = kPlain, .work = [files, size](const SendBytes& send) { send_tiffs(files, size, send); }};
+  return {{.format = ItkFormat::kTiff, .source = source, .files = files, .size = size, .gap = {}}, kPlain};
 }
 
 Plan dicom_plan(const std::string& source, const std::vector<std::string>& files, const ReadOptions& options) {
@@ -177,9 +49,7 @@ Plan dicom_plan(const std::string& source, const std::vector<std::string>& files
   size.z = int(files.size());
   std::optional<double> gap;
   if (options.spacing) gap = options.spacing->z;
-  return {.size = size, .space = kAnatomical, .work = [source, files, gap](const SendBytes& send) {
-            send_dicom(source, files, gap, send);
-          }};
+  return {{.format = ItkFormat::kDicom, .source = source, .files = files, .size = size, .gap = gap}, kAnatomical};
 }
 
 Plan folder_plan(const std::string& source, const ReadOptions& options) {
@@ -195,17 +65,24 @@ Plan plan(const std::string& source, const ReadOptions& options) {
   (void)detail::require_file(source);
   if (detail::is_dicom(source)) return dicom_plan(source, {source}, options);
   if (detail::is_tiff(source)) return tiff_plan(source, {source}, options);
+  const auto one_file = [&](ItkFormat format, Index3 size, std::string_view space) {
+    return Plan{{.format = format, .source = source, .files = {source}, .size = size, .gap = {}}, space};
+  };
   if (detail::is_legacy_vtk(source))
-    return {.size = detail::check_legacy_vtk(source).size, .space = kPlain, .work = [source](const SendBytes& send) {
-              send_file<itk::VTKImageIO>(source, send);
-            }};
+    return one_file(ItkFormat::kLegacyVtk, detail::check_legacy_vtk(source).size, kPlain);
   if (detail::is_meta_image(source))
-    return {.size = detail::check_meta_image(source, options).size,
-            .space = kAnatomical,
-            .work = [source](const SendBytes& send) { send_file<itk::MetaImageIO>(source, send); }};
-  return {.size = detail::check_nifti(source).size, .space = kAnatomical, .work = [source](const SendBytes& send) {
-            send_file<itk::NiftiImageIO>(source, send);
-          }};
+    return one_file(ItkFormat::kMetaImage, detail::check_meta_image(source, options).size, kAnatomical);
+  return one_file(ItkFormat::kNifti, detail::check_nifti(source).size, kAnatomical);
+}
+
+/// In the child. ITK's libraries take 25 ms and 20 MB to be there, so that only who reads with them loads them. The
+/// library is found by the program's RUNPATH, which whoever links this module has from it.
+ItkEntry* load_itk(const std::string& source) {
+  void* library = dlopen(ISOLUX_ITK_LIBRARY, RTLD_NOW | RTLD_LOCAL);
+  void* entry = library == nullptr ? nullptr : dlsym(library, detail::kItkEntry);
+  if (entry == nullptr)
+    throw IoError(fmt::format("{}: the library that reads it cannot be loaded: {}", source, dlerror()));
+  return reinterpret_cast<ItkEntry*>(entry);
 }
 
 /// NIfTI, MetaImage, legacy VTK, TIFF and DICOM through ITK, in a child process and behind our own checks. Immutable,
@@ -242,13 +119,9 @@ class ItkReader final : public VolumeReader {
     const auto limit = std::chrono::seconds(std::int64_t(std::ceil(options_.time_limit)));
     detail::ReceivedVolume volume;
     detail::run_in_child(
-        source, limit, run,
-        [&](const SendBytes& send) {
-          itk::MultiThreaderBase::SetGlobalDefaultNumberOfThreads(1);
-          what.work(send);
-        },
+        source, limit, run, [&](const SendBytes& send) { load_itk(source)(what.request, send); },
         [&](detail::ByteSource& received) {
-          volume = detail::receive_volume(received, source, what.size, options.form, run);
+          volume = detail::receive_volume(received, source, what.request.size, options.form, run);
         });
     return detail::make_volume(source, volume.header.lattice, std::move(volume.values), volume.header.stored_type,
                                std::string(what.space), options);

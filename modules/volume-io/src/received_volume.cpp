@@ -1,27 +1,12 @@
-#include "itk_pixels.h"
-
-#include "scalars.h"
+#include "received_volume.h"
 
 #include <fmt/format.h>
 #include <isolux/core/error.h>
 
 #include <array>
-#include <type_traits>
 
 namespace isolux::detail {
 namespace {
-
-static_assert(std::is_trivially_copyable_v<SentVolume>, "it goes through a pipe between two copies of one program");
-
-struct BlockHeader {
-  ScalarType type = ScalarType::kUint8;
-  std::uint64_t bytes = 0;
-};
-
-template <class T>
-void send_value(const SendBytes& send, const T& value) {
-  send(std::as_bytes(std::span(&value, 1)));
-}
 
 template <class T>
 T receive_value(ByteSource& received, const std::string& path) {
@@ -32,13 +17,6 @@ T receive_value(ByteSource& received, const std::string& path) {
 }
 
 }  // namespace
-
-void send_volume(const SendBytes& send, const SentVolume& volume) { send_value(send, volume); }
-
-void send_block(const SendBytes& send, ScalarType type, std::span<const std::byte> values) {
-  send_value(send, BlockHeader{type, values.size()});
-  send(values);
-}
 
 ReceivedVolume receive_volume(ByteSource& received, const std::string& path, Index3 expected, VoxelForm form,
                               const Run& run) {
@@ -52,7 +30,7 @@ ReceivedVolume receive_volume(ByteSource& received, const std::string& path, Ind
   const std::uint64_t count = checked_count(path, sizes, sizeof(float));
   const std::uint64_t blocks = volume.header.blocks;
   for (std::uint64_t b = 0; b < blocks; ++b) {
-    const auto block = receive_value<BlockHeader>(received, path);
+    const auto block = receive_value<SentBlock>(received, path);
     const std::uint64_t in_block = block.bytes / bytes_per_scalar(block.type);
     if (in_block != count / blocks)
       throw IoError(
