@@ -2,13 +2,17 @@
 #include <isolux/bake/choose_texels.h>
 #include <isolux/core/error.h>
 #include <isolux/core/field.h>
+#include <isolux/resample/openness.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
 #include <limits>
+
+#include "resampling_choice.h"
 
 namespace isolux {
 namespace {
@@ -16,7 +20,8 @@ namespace {
 constexpr std::array<double, 6> kRatios = {0.25, 0.5, 0.75, 1.0, 1.5, 2.0};
 constexpr std::size_t kPoints = 1000;  // the rms of an error is known to some 5 percent
 constexpr int kPointRays = 256;
-constexpr int kTexelRays = 64;
+constexpr double kRidge = 1e-6;  // of the moments' diagonal: openness at several steps may be all alike
+constexpr int kTexelRays = 64;   // whatever the bake will spend: exact texels are asked about
 
 /// Random points of random level sets, the light there, and how much area of how many level sets each stands for.
 struct Reference {
@@ -87,43 +92,105 @@ Corners corners_of(const Volume& volume, const Scene& scene, const Lattice& texe
   return result;
 }
 
-/// What reading between the texels says at each point, and the variance of that by rays.
+/// What reading between the texels says at each point.
 struct Readings {
-  std::vector<double> light;  ///< as SampleSet::radiance
-  std::vector<double> variance;
-  std::vector<double> weight;  ///< of the corners that are lit
+  std::vector<double> light;     ///< as SampleSet::radiance
+  std::vector<double> variance;  ///< of that by rays
+  std::vector<Vec3> openness;    ///< of the texels, read like their light; empty if it is not asked for
+  std::vector<double> lit;       ///< the corners' share that has light; 0 where there is nothing to read
 };
 
-Readings read_between(const Corners& corners, const SampleSet& texels, std::size_t points) {
+Readings read_between(const Corners& corners, const SampleSet& texels, const std::vector<Vec3f>& openness,
+                      std::size_t points) {
   const auto channels = std::size_t(texels.channels);
-  Readings read{std::vector<double>(points * channels), std::vector<double>(points), std::vector<double>(points)};
+  Readings read{.light = std::vector<double>(points * channels),
+                .variance = std::vector<double>(points),
+                .openness = std::vector<Vec3>(openness.empty() ? 0 : points, Vec3(0.0)),
+                .lit = std::vector<double>(points)};
+  for (const auto& [point, weight] : corners.corners) read.lit[point] += weight;
   for (std::size_t s = 0; s < texels.size(); ++s) {
     const auto [point, weight] = corners.corners[s];
+    const double share = weight / read.lit[point];
     for (std::size_t c = 0; c < channels; ++c)
-      read.light[point * channels + c] += weight * double(texels.radiance[s * channels + c]);
-    read.variance[point] += weight * weight * double(texels.variance[s]);
-    read.weight[point] += weight;
+      read.light[point * channels + c] += share * double(texels.radiance[s * channels + c]);
+    read.variance[point] += share * share * double(texels.variance[s]);
+    if (!read.openness.empty()) read.openness[point] += share * Vec3(openness[s]);
   }
   return read;
 }
 
-double interpolation_error(const Reference& reference, const Readings& read) {
-  const auto channels = std::size_t(reference.samples.channels);
-  double squares = 0.0;
-  double total = 0.0;
-  for (std::size_t p = 0; p < reference.samples.size(); ++p) {
-    const double lit = read.weight[p];
-    if (!(lit > 0.0)) continue;
-    double square = 0.0;
-    for (std::size_t c = 0; c < channels; ++c) {
-      const double e = read.light[p * channels + c] / lit;
-      square += std::pow(e - double(reference.samples.radiance[p * channels + c]), 2.0) / double(channels);
+/// Judges readings against the reference.
+class Judge {
+ public:
+  Judge(const Reference& reference, const Readings& read, const std::vector<Vec3f>& openness)
+      : reference_(reference), read_(read), openness_(openness), channels_(std::size_t(reference.samples.channels)) {}
+
+  /// rms of reading less truth, the variance of both taken out.
+  [[nodiscard]] double error() const {
+    const double plain = error_with([](std::size_t /*point*/, std::size_t /*channel*/) { return Vec3(0.0); });
+    if (openness_.empty()) return plain;
+    // What a half of the points says of the weights is tried on the other half.
+    std::array<std::vector<Vec3>, 2> weights;
+    for (std::size_t half = 0; half < 2; ++half) {
+      for (std::size_t c = 0; c < channels_; ++c) weights[half].push_back(near_field_weights(1 - half, c));
     }
-    const double noise = double(reference.samples.variance[p]) + read.variance[p] / (lit * lit);
-    squares += reference.weights[p] * (square - noise);
-    total += reference.weights[p];
+    return std::min(plain, error_with([&](std::size_t p, std::size_t c) { return weights[p % 2][c]; }));
   }
-  return total > 0.0 ? std::sqrt(std::max(0.0, squares / total)) : 0.0;
+
+ private:
+  [[nodiscard]] double truth_beyond(std::size_t point, std::size_t channel) const {
+    const std::size_t v = point * channels_ + channel;
+    return double(reference_.samples.radiance[v]) - read_.light[v];
+  }
+  [[nodiscard]] Vec3 openness_beyond(std::size_t point) const {
+    return openness_.empty() ? Vec3(0.0) : Vec3(openness_[point]) - read_.openness[point];
+  }
+
+  /// Those by which openness best foretells what reading misses, as estimate_near_field() finds them between texels:
+  /// steep places count by their steepness's root.
+  [[nodiscard]] Vec3 near_field_weights(std::size_t half, std::size_t channel) const {
+    Mat3 squares(0.0);
+    Vec3 products(0.0);
+    for (std::size_t p = half; p < reference_.samples.size(); p += 2) {
+      if (!(read_.lit[p] > 0.0)) continue;
+      const Vec3 more = openness_beyond(p);
+      const double weight = std::sqrt(reference_.weights[p]);
+      squares += weight * glm::outerProduct(more, more);
+      products += weight * truth_beyond(p, channel) * more;
+    }
+    for (int t = 0; t < 3; ++t) squares[t][t] *= 1.0 + kRidge;
+    return glm::determinant(squares) > 0.0 ? glm::inverse(squares) * products : Vec3(0.0);
+  }
+
+  template <class Weights>
+  [[nodiscard]] double error_with(const Weights& weights) const {
+    double squares = 0.0;
+    double total = 0.0;
+    for (std::size_t p = 0; p < reference_.samples.size(); ++p) {
+      if (!(read_.lit[p] > 0.0)) continue;
+      double square = 0.0;
+      for (std::size_t c = 0; c < channels_; ++c) {
+        const double missed = truth_beyond(p, c) - glm::dot(weights(p, c), openness_beyond(p));
+        square += missed * missed / double(channels_);
+      }
+      const double noise = double(reference_.samples.variance[p]) + read_.variance[p];
+      squares += reference_.weights[p] * (square - noise);
+      total += reference_.weights[p];
+    }
+    return total > 0.0 ? std::sqrt(std::max(0.0, squares / total)) : 0.0;
+  }
+
+  const Reference& reference_;
+  const Readings& read_;
+  const std::vector<Vec3f>& openness_;
+  std::size_t channels_;
+};
+
+/// Whether the bake's light will be read with near-field terms.
+bool has_near_field(BakeSettings settings, const Stages& stages) {
+  choose_resampling(settings);
+  return settings.texel_sites == TexelSites::kAll &&
+         stages.resamplers.create(settings.resampler.name, settings.resampler.settings)->has_near_field();
 }
 
 /// What the side that wants more texels wants.
@@ -156,16 +223,22 @@ TexelChoice choose_texels(const Volume& volume, const Scene& scene, const BakeSe
   TexelChoice best{.texels = Index3(1), .error = std::numeric_limits<double>::infinity(), .counters = {}};
   const Reference reference = trace_reference(volume, scene, settings, *tracer, stages, run, best.counters);
   TraceSettings rays = settings.trace;
-  rays.rays = std::min(rays.rays, kTexelRays);
+  rays.rays = kTexelRays;
+  const bool near_field = has_near_field(settings, stages);
+  const auto openness_of = [&](const Sites& sites) {
+    return near_field ? openness_before(volume, sites) : std::vector<Vec3f>{};
+  };
+  const std::vector<Vec3f> openness = openness_of(reference.samples.sites);
   Run other = run;
   for (const double ratio : kRatios) {
     const Lattice texels = cell_lattice(volume.lattice(), texels_by_ratio(volume.lattice(), ratio));
     Corners corners = corners_of(volume, scene, texels, reference.samples.sites, settings.trace.gradient);
     ++other.seed;  // rays of a texel and of a point must not be the same ones
+    const std::vector<Vec3f> before_corners = openness_of(corners.sites);
     const TraceResult traced = tracer->trace(volume, scene, std::move(corners.sites), rays, other);
     best.counters.rays += traced.counters.rays;
-    const Readings read = read_between(corners, traced.samples, reference.samples.size());
-    const double error = interpolation_error(reference, read);
+    const Readings read = read_between(corners, traced.samples, before_corners, reference.samples.size());
+    const double error = Judge(reference, read, openness).error();
     if (error < best.error) {
       best.texels = texels.size;
       best.error = error;

@@ -7,6 +7,7 @@
 #include <isolux/volume_io/read.h>
 
 #include <cmath>
+#include <utility>
 
 namespace isolux::test {
 namespace {
@@ -51,10 +52,13 @@ TEST(ChooseTexels, SaysWhatItMissesTheTargetBy) {
 
 // The estimate against a bake of that size, read at other random points: both are a root mean square over a thousand
 // points or so, each known to some 5 percent; weights of area and the texels' rays make up the rest of a quarter.
-TEST(ChooseTexels, ForetellsTheErrorOfABake) {
-  const Volume volume = read_volume("gen:gyroid:20");
+class ForetoldError : public ::testing::TestWithParam<std::pair<const char*, double>> {};
+
+TEST_P(ForetoldError, IsThatOfABake) {
+  const auto [name, target] = GetParam();
+  const Volume volume = read_volume(name);
   BakeSettings settings = without_bounces();
-  const TexelChoice chosen = choice(volume, 0.06, settings);
+  const TexelChoice chosen = choice(volume, target, settings);
   settings.texels = chosen.texels;
   settings.trace.rays = 512;
   const BakeResult baked = bake(volume, {}, settings, stages(), {});
@@ -73,6 +77,32 @@ TEST(ChooseTexels, ForetellsTheErrorOfABake) {
   }
   const double error = std::sqrt(squares / total);
   EXPECT_NEAR(chosen.error / error, 1.0, 0.25);
+}
+
+INSTANTIATE_TEST_SUITE_P(ChooseTexels, ForetoldError,
+                         ::testing::Values(std::pair("gen:gyroid:20", 0.06), std::pair("gen:marschner-lobb:32", 0.1),
+                                           std::pair("gen:noise:16", 0.1)));
+
+// What texels are wrong by does not depend on the rays that the bake will spend: one ray a texel says nothing about its
+// own noise.
+TEST(ChooseTexels, DoesNotDependOnTheRaysOfTheBake) {
+  const Volume volume = read_volume("gen:gyroid:20");
+  BakeSettings settings = without_bounces();
+  const TexelChoice usual = choice(volume, 0.05, settings);
+  settings.trace.rays = 1;
+  const TexelChoice one = choice(volume, 0.05, settings);
+  EXPECT_EQ(one.texels, usual.texels);
+  EXPECT_EQ(one.error, usual.error);
+}
+
+// Light that is read with the volume's openness needs fewer texels than light that is not.
+TEST(ChooseTexels, CountsTheNearFieldWhereItWillBeRead) {
+  const Volume volume = read_volume("gen:marschner-lobb:32");
+  BakeSettings settings = without_bounces();
+  settings.resampler.settings = {{"near_field", "false"}};
+  const double plain = choice(volume, 1e-3, settings).error;
+  settings.resampler.settings = {};
+  EXPECT_LT(choice(volume, 1e-3, settings).error, 0.95 * plain);
 }
 
 TEST(ChooseTexels, KnowsUnevenVolumesAndKnownIsovalues) {

@@ -1,6 +1,7 @@
 #include "texel_near_field.h"
 
 #include <isolux/core/parallel.h>
+#include <isolux/resample/openness.h>
 
 #include <algorithm>
 #include <array>
@@ -20,7 +21,7 @@ namespace isolux {
 namespace {
 
 /// Half a step is one of a fit's but not one of these: at cell centres it says other things than elsewhere
-/// (docs/resampling.md).
+/// (docs/resampling.md). Those that openness_before() promises.
 constexpr std::array<double, 3> kSteps = {1.0, 2.0, 4.0};
 /// Of the squared differences between texels, the part that terms must explain to be kept: it makes no visible
 /// difference below.
@@ -263,6 +264,19 @@ void take_off_near_field(const Volume& volume, IlluminationGrid& light, const Ru
     }
   });
   light.detail.texel_light = TexelLight::kReduced;
+}
+
+std::vector<Vec3f> openness_before(const Volume& volume, const Sites& sites) {
+  const NearField near_field(volume);
+  const double outwards = near_field.outwards(sites);
+  std::vector<Vec3f> openness(sites.size());
+  for (std::size_t s = 0; s < sites.size(); ++s) {
+    const Vec3 index(sites.positions[s]);
+    const NearField::Ahead ahead = near_field.ahead(index);
+    for (std::size_t t = 0; t < kSteps.size(); ++t)
+      openness[s][int(t)] = near_field.openness(index, ahead, double(sites.isovalues[s]), outwards * kSteps[t]);
+  }
+  return openness;
 }
 
 }  // namespace isolux

@@ -4,5 +4,6 @@
 #include <isolux/resample/fill_unlit.h>
 #include <isolux/resample/light_bricks.h>
 #include <isolux/resample/light_reader.h>
+#include <isolux/resample/openness.h>
 #include <isolux/resample/resampler.h>
 #include <isolux/resample/texel_means.h>

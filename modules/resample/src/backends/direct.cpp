@@ -73,6 +73,8 @@ class Direct final : public Resampler {
     return options_.denoise ? LampLight::kToldApart : LampLight::kWithin;
   }
 
+  [[nodiscard]] bool has_near_field() const override { return options_.near_field; }
+
   void add_detail(const Volume& volume, const SampleSet& samples, ResampledGrid& texels,
                   const Run& run) const override {
     if (!options_.near_field) return;

@@ -48,6 +48,8 @@ class Fit final : public Resampler {
   };
   explicit Fit(const Options& options) : options_(options) {}
 
+  [[nodiscard]] bool has_near_field() const override { return options_.near_field; }
+
   ResampledGrid resample(const Volume& volume, const SampleSet& samples, const Lattice& texels,
                          const Run& run) const override {
     require_samples(samples);

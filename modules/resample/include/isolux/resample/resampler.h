@@ -44,6 +44,9 @@ class Resampler {
   /// sites only positions are looked at, isovalues and normals may be missing. \pre takes_parts() \throw as resample()
   virtual void add_part(const Volume& volume, const SampleSet& samples, IlluminationGrid& texels, const Run& run) const;
 
+  /// Whether what it makes is read with near-field terms (NearFieldTerm), where these help.
+  [[nodiscard]] virtual bool has_near_field() const { return false; }
+
   /// Gives a grid that was made of these samples, and perhaps of others like them, what LightReader wants beyond its
   /// values, once they are what they will be. By default nothing.
   virtual void add_detail(const Volume& /*volume*/, const SampleSet& /*samples*/, ResampledGrid& /*texels*/,
