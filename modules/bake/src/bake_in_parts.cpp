@@ -19,15 +19,6 @@
 namespace isolux {
 namespace {
 
-/// Few, as each takes passes over the volume; so many that a part's sites take less than a byte a texel of them all.
-constexpr std::size_t kMostParts = 64;
-constexpr std::size_t kTexelsAPart = std::size_t(1) << 17;
-
-std::size_t part_count(const BakeSettings& settings, const Lattice& texels) {
-  if (settings.isovalue_parts > 0) return std::size_t(settings.isovalue_parts);
-  return std::clamp<std::size_t>(texels.count() / kTexelsAPart, 1, kMostParts);
-}
-
 class PartBaker {
  public:
   PartBaker(const Volume& volume, const Scene& scene, const BakeSettings& settings, BakeResult begun,
@@ -45,7 +36,7 @@ class PartBaker {
 
   BakeResult bake() {
     const std::vector<ValueRange> parts =
-        isovalue_parts(volume_, texels_, settings_.isovalues, part_count(settings_, texels_));
+        isovalue_parts(volume_, request(settings_.isovalues), std::size_t(settings_.isovalue_parts), run_);
     for (std::size_t p = 0; p < parts.size(); ++p) {
       const auto all = double(parts.size());
       light(parts[p], part_of(run_, double(p) / all, double(p + 1) / all));
@@ -61,12 +52,16 @@ class PartBaker {
   }
 
  private:
+  [[nodiscard]] SiteRequest request(const std::optional<ValueRange>& isovalues) const {
+    SiteRequest sites = site_request(settings_, texels_, scene_.outer);
+    sites.isovalues = isovalues;
+    sites.values = values_;
+    return sites;
+  }
+
   void light(const ValueRange& isovalues, const Run& run) {
     const Stopwatch finding;
-    SiteRequest request = site_request(settings_, texels_, scene_.outer);
-    request.isovalues = isovalues;
-    request.values = values_;
-    Sites sites = sampler_->sample(volume_, request, run);
+    Sites sites = sampler_->sample(volume_, request(isovalues), run);
     result_.seconds["sites"] += finding.seconds();
     if (sites.size() == 0) return;
     result_.sites += sites.size();

@@ -1,6 +1,5 @@
 #include "isovalue_parts.h"
 
-#include <isolux/core/field.h>
 #include <isolux/core/random.h>
 
 #include <algorithm>
@@ -13,35 +12,50 @@ namespace isolux {
 namespace {
 
 constexpr std::size_t kLooks = 32768;
+/// A part's sites for a voxel, of which they take .7 byte while they are lit, and the fewest that are worth a part: it
+/// takes passes over the volume.
+constexpr std::size_t kVoxelsASite = 64;
+constexpr std::size_t kFewestSites = std::size_t(1) << 16;
+constexpr std::size_t kMostParts = 64;
 
-/// Isovalues of texels here and there, sorted.
-std::vector<float> some_isovalues(const Volume& volume, const Lattice& texels,
-                                  const std::optional<ValueRange>& wanted) {
-  const TrilinearField field(volume);
-  const IndexToWorld to_volume = index_to_index(texels, volume.lattice());
-  std::vector<float> values;
+/// Isovalues of the sites at texels here and there, sorted: as many as texels of kLooks have a site.
+std::vector<float> some_isovalues(const Volume& volume, const SiteRequest& request, const Run& run) {
+  const IndexToWorld to_volume = index_to_index(request.texels, volume.lattice());
+  std::vector<Vec3f> positions;
   for (std::size_t look = 0; look < kLooks; ++look) {
-    const auto texel = std::size_t(mix_bits(look) % texels.count());
-    const auto value = float(field.value(to_volume.world(Vec3(index_of(texels.size, texel)))));
-    if (!wanted || (value >= wanted->low && value <= wanted->high)) values.push_back(value);
+    const auto texel = std::size_t(mix_bits(look) % request.texels.count());
+    positions.emplace_back(to_volume.world(Vec3(index_of(request.texels.size, texel))));
   }
+  std::vector<float> values = make_sites(volume, std::move(positions), request, run).isovalues;
   std::sort(values.begin(), values.end());
   return values;
 }
 
 }  // namespace
 
-std::vector<ValueRange> isovalue_parts(const Volume& volume, const Lattice& texels,
-                                       const std::optional<ValueRange>& wanted, std::size_t count) {
+std::vector<ValueRange> isovalue_parts(const Volume& volume, const SiteRequest& request, std::size_t count,
+                                       const Run& run) {
   constexpr float kAll = std::numeric_limits<float>::infinity();
-  const ValueRange all = wanted.value_or(ValueRange{.low = -kAll, .high = kAll});
+  const ValueRange all = request.isovalues.value_or(ValueRange{.low = -kAll, .high = kAll});
   std::vector<ValueRange> parts{all};
-  const std::vector<float> values = some_isovalues(volume, texels, wanted);
-  for (std::size_t part = 1; part < count && !values.empty(); ++part) {
-    const float low = values[part * values.size() / count];
-    if (!(low > parts.back().low && low > values.front())) continue;
-    parts.back().high = std::nextafter(low, -kAll);
-    parts.push_back({.low = low, .high = all.high});
+  const std::vector<float> values = some_isovalues(volume, request, run);
+  if (count == 0) {
+    const double sites = double(request.texels.count()) * double(values.size()) / double(kLooks);
+    const auto a_part = double(std::max(volume.lattice().count() / kVoxelsASite, kFewestSites));
+    count = std::clamp<std::size_t>(std::size_t(std::lround(sites / a_part)), 1, kMostParts);
+  }
+  // A part ends where the sites of the next isovalue would make it larger than its share: many have the same one in
+  // volumes of whole numbers, and those cannot be parted. No part is less than half a share: nets of rays are spread
+  // over sites by how densely these lie.
+  const std::size_t share = (values.size() + count - 1) / count;
+  const std::size_t half = (share + 1) / 2;
+  std::size_t first = 0;  // of the part
+  for (std::size_t begin = 0, end = 0; begin < values.size(); begin = end) {
+    while (end < values.size() && values[end] == values[begin]) ++end;
+    if (end - first <= share || begin - first < half || values.size() - begin < half) continue;
+    parts.back().high = std::nextafter(values[begin], -kAll);
+    parts.push_back({.low = values[begin], .high = all.high});
+    first = begin;
   }
   return parts;
 }

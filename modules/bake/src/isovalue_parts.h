@@ -7,9 +7,11 @@
 
 namespace isolux {
 
-/// Ranges of isovalues, rising, which hold about as many texels each and together all of those `wanted` (or of any):
-/// at most `count` of them, fewer where many texels have one isovalue. The same for any number of threads.
-[[nodiscard]] std::vector<ValueRange> isovalue_parts(const Volume& volume, const Lattice& texels,
-                                                     const std::optional<ValueRange>& wanted, std::size_t count);
+/// Ranges of isovalues, rising, which hold about as many of the sites that `request` puts at texels each and all of
+/// them together: `count` of them, or with 0 as many as leave a part a site for 64 voxels, 64 at most. Where many sites
+/// share an isovalue, parts that have it can be larger, and up to twice as many parts keep the others from growing. The
+/// same for any number of threads.
+[[nodiscard]] std::vector<ValueRange> isovalue_parts(const Volume& volume, const SiteRequest& request,
+                                                     std::size_t count, const Run& run);
 
 }  // namespace isolux

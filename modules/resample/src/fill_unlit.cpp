@@ -71,15 +71,16 @@ class Filler {
   [[nodiscard]] const Lattice& lattice() const { return grid_.lattice; }
 
   [[nodiscard]] std::vector<std::size_t> first_front() {
-    std::vector<std::size_t> lit_border;
+    std::vector<std::size_t> front;
     bool any_lit = false;
     for (std::size_t t = 0; t < state_.size(); ++t) {
-      if (state_[t] != kLit) continue;
-      any_lit = true;
-      if (touches_unlit(t)) lit_border.push_back(t);
+      any_lit = any_lit || state_[t] == kLit;
+      if (state_[t] != kUnlit || !touches_lit(t)) continue;
+      state_[t] = kInFront;
+      front.push_back(t);
     }
     if (!any_lit) throw InvalidInput(fmt::format("none of {} texels has light to fill the others from", state_.size()));
-    return next_front(lit_border);
+    return front;
   }
 
   template <class Visit>
@@ -93,9 +94,9 @@ class Filler {
     }
   }
 
-  [[nodiscard]] bool touches_unlit(std::size_t texel) const {
+  [[nodiscard]] bool touches_lit(std::size_t texel) const {
     bool found = false;
-    for_each_face_neighbour(texel, [&](std::size_t n) { found = found || state_[n] == kUnlit; });
+    for_each_face_neighbour(texel, [&](std::size_t n) { found = found || state_[n] == kLit; });
     return found;
   }
 
