@@ -58,6 +58,7 @@ class BadCommandLine(CommandLineTest):
             (("bake", "gen:sphere:8", "-o", "l.nrrd", "--rmse", "nan"), "a number above 0"),
             (("bake", "gen:sphere:8", "-o", "l.nrrd", "--time", "nan"), "a number above 0"),
             (("bake", "gen:sphere:8", "-o", "l.nrrd", "--texels-a-cell", "nan"), "a number from 0.125 to 8"),
+            (("bake", "gen:sphere:8", "-o", "l.nrrd", "--bounces", "99999999999"), "from 0 to 2147483647"),
             (("bake", "gen:sphere:8", "-o", "l.nrrd", "--seed", "-1"), "--seed: '-1'"),
             (("bake", "gen:sphere:8", "-o", "l.nrrd", "--seed", "99999999999999999999"), "whole number"),
             (("bake", "gen:sphere:8", "-o", "l.nrrd", "--iso-range", "0:1e300"), "--iso-range"),
@@ -193,6 +194,13 @@ class BadScene(CommandLineTest):
 
 
 class BadOutput(CommandLineTest):
+    def test_a_grid_or_a_name_that_cannot_be_is_found_before_the_work(self):
+        self.fail(1, "bake", "gen:sphere:8", "-o", "l.nrrd", "--texels", "20000x20000x20000",
+                  says=("20000x20000x20000 texels take 32000.0 GB", "this machine has"))
+        said = self.fail(1, "bake", "gen:sphere:8", "-o", "x" * 300 + ".nrrd", says="File name too long").stderr
+        self.assertNotIn("texels from", said)
+        self.succeed("bake", "gen:sphere:8", "--rays", 1, "--quiet", "-o", "x" * 250 + ".nrrd")
+
     def test_a_folder_that_is_not_there(self):
         self.fail(1, "bake", "gen:sphere:8", "-o", "gone/light.nrrd", "--rays", 1, "--quiet", says="gone")
         self.fail(1, "extract", "gen:sphere:8", "--iso", -0.3, "-o", "gone/mesh.ply", says="gone")

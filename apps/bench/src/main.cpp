@@ -6,7 +6,6 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdlib>
-#include <exception>
 #include <filesystem>
 #include <fstream>
 #include <string>
@@ -14,6 +13,7 @@
 #include <vector>
 
 #include "faults.h"
+#include "program.h"
 #include "report.h"
 #include "session.h"
 #include "suite.h"
@@ -32,7 +32,7 @@ struct Arguments {
   std::string fault;
 };
 
-/// Exit status of a finished parse, or -1 to go on. \throw UsageError
+/// Exit status of a finished parse, or -1 to go on. \throw UsageError, IoError
 int parse(int argc, char** argv, Arguments& arguments, Session& session) {
   CLI::App app{"Run time against error of every stage; writes JSON, CSV, pictures and report.md", "isolux bench"};
   std::vector<std::string> known;
@@ -59,36 +59,53 @@ int parse(int argc, char** argv, Arguments& arguments, Session& session) {
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& help) {
-    return app.exit(help);
+    return print_help(app, help);
   } catch (const CLI::ParseError& error) {
     throw UsageError(explain(error, app));
   }
+  if (app.count("--quick") > 1) throw UsageError("--quick, --full, --smoke: only one of them can be meant");
   return -1;
 }
 
-/// Made before the first suite, so that no minutes are lost to a folder that cannot be. \throw IoError
-void make_folder(const std::string& folder) {
-  std::error_code error;
-  std::filesystem::create_directories(folder, error);
-  if (error) throw IoError(fmt::format("{}: cannot be made a folder: {}", folder, error.message()));
-  require_writable((std::filesystem::path(folder) / "report.md").string());
-}
+/// The results' folder, made before the first suite, so that no minutes are lost to one that cannot be. One that was
+/// made and stays empty, as no suite ended, goes again.
+class ResultFolder {
+ public:
+  /// \throw IoError
+  explicit ResultFolder(const std::string& folder) : folder_(folder) {
+    std::error_code error;
+    made_ = std::filesystem::create_directories(folder, error);
+    if (error) throw IoError(fmt::format("{}: cannot be made a folder: {}", folder, error.message()));
+    require_writable((std::filesystem::path(folder) / "report.md").string());
+  }
+  ResultFolder(const ResultFolder&) = delete;
+  ResultFolder& operator=(const ResultFolder&) = delete;
+  ~ResultFolder() {
+    std::error_code ignored;
+    if (made_) std::filesystem::remove(folder_, ignored);
+  }
+
+ private:
+  std::string folder_;
+  bool made_ = false;
+};
 
 /// 1 if a claim of a suite did not hold.
 int run_suites(const Arguments& arguments, Session& session) {
-  make_folder(arguments.folder);
+  const ResultFolder folder(arguments.folder);
   SuiteContext context{.effort = arguments.effort,
-                       .run = {.seed = session.run.seed, .threads = session.run.threads},
+                       .run = {.seed = session.run.seed, .threads = session.run.threads, .stop = session.run.stop},
                        .stages = builtin_stages(),
                        .data_folder = {},
                        .say = [&session](std::string_view text) { session.say(fmt::format("    {}", text)); }};
-  if (const char* folder = std::getenv("ISOLUX_DATA"); folder != nullptr) context.data_folder = folder;
+  if (const char* data = std::getenv("ISOLUX_DATA"); data != nullptr) context.data_folder = data;
   if (!arguments.fault.empty()) context.stages = with_fault(std::move(context.stages), arguments.fault);
   std::ifstream("/proc/loadavg") >> context.load_before;
   int status = 0;
   for (const Suite& suite : suites()) {
     const auto& names = arguments.names;
     if (!names.empty() && std::find(names.begin(), names.end(), suite.name) == names.end()) continue;
+    throw_if_stopped(session.run);
     session.say(fmt::format("{}: {}", suite.name, suite.help));
     context.budget = budget_of(suite, context.effort);
     const Stopwatch watch;
@@ -109,21 +126,12 @@ int run_suites(const Arguments& arguments, Session& session) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  open_standard_streams();
-  try {
+  return run_program("bench", [&](Session& session, std::string& /*what*/) {
     Arguments arguments;
-    Session session;
     int status = parse(argc, argv, arguments, session);
     if (status >= 0) return status;
     session.on_run([&] { status = run_suites(arguments, session); });
     session.run_action();
-    flush_output();
     return status;
-  } catch (const UsageError& error) {
-    complain("bench", error.what());
-    return 2;
-  } catch (const std::exception& error) {
-    complain("bench", error.what());
-    return 1;
-  }
+  });
 }

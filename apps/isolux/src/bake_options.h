@@ -20,15 +20,17 @@ class TraceOptions {
   [[nodiscard]] const std::string& scene_path() const { return scene_; }
   [[nodiscard]] bool scene_given() const { return !scene_.empty(); }
   [[nodiscard]] bool bounces_given() const { return !bounces_.empty(); }
-  /// Whether --bounces, --rays or --tracer were given.
-  [[nodiscard]] bool says_how_to_trace() const { return bounces_given() || rays_ > 0 || !tracer_.empty(); }
+  /// Whether --bounces, --quality, --rays or --tracer were given.
+  [[nodiscard]] bool says_how_to_trace() const {
+    return bounces_given() || !quality_.empty() || rays_ > 0 || !tracer_.empty();
+  }
   [[nodiscard]] TraceSettings settings() const;
   [[nodiscard]] const std::string& tracer() const { return tracer_; }
 
  private:
   std::string scene_;
   std::string bounces_;
-  std::string quality_ = "good";
+  std::string quality_;
   int rays_ = 0;
   std::string tracer_;
 };

@@ -6,25 +6,26 @@
 #include "commands.h"
 #include "companion.h"
 #include "registry_json.h"
+#include "terminal.h"
 
 namespace isolux {
 namespace {
 
 void print(const nlohmann::json& stages) {
   for (const auto& stage : stages) {
-    fmt::print("{}\n", stage["stage"].get<std::string>());
+    put_out(fmt::format("{}\n", stage["stage"].get<std::string>()));
     for (const auto& backend : stage["backends"]) {
       if (!backend["available"].get<bool>()) {
-        fmt::print("  {:<22} not in this build: {}\n", backend["name"].get<std::string>(),
-                   backend["why_unavailable"].get<std::string>());
+        put_out(fmt::format("  {:<22} not in this build: {}\n", backend["name"].get<std::string>(),
+                            backend["why_unavailable"].get<std::string>()));
         continue;
       }
-      fmt::print("  {:<22} {}{}\n", backend["name"].get<std::string>(), backend["help"].get<std::string>(),
-                 backend["default"].get<bool>() ? " (default)" : "");
+      put_out(fmt::format("  {:<22} {}{}\n", backend["name"].get<std::string>(), backend["help"].get<std::string>(),
+                          backend["default"].get<bool>() ? " (default)" : ""));
       for (const auto& option : backend["options"]) {
-        fmt::print("    {:<20} {} [default {}; {}]\n", option["name"].get<std::string>(),
-                   option["help"].get<std::string>(), option["default"].get<std::string>(),
-                   option["allowed"].get<std::string>());
+        put_out(fmt::format("    {:<20} {} [default {}; {}]\n", option["name"].get<std::string>(),
+                            option["help"].get<std::string>(), option["default"].get<std::string>(),
+                            option["allowed"].get<std::string>()));
       }
     }
   }
@@ -46,7 +47,7 @@ void add_backends_command(CLI::App& program, Session& session) {
       // The texture uploaders live in the viewer, the one program that links OpenGL.
       if (const auto uploaders = companion_json("isolux-view", "--uploaders")) all.push_back(*uploaders);
       if (*json) {
-        fmt::print("{}\n", all.dump(2));
+        put_out(all.dump(2) + "\n");
       } else {
         print(all);
       }

@@ -138,7 +138,7 @@ void extract(const Subject& subject, const BackendChoice& choice, const ExtractO
   if (options.light.given()) light = options.light.read(*subject.floats, session);
   const Scene scene = scene_for(options, light);
   if (!options.exact_light && options.trace.says_how_to_trace())
-    session.warn("--bounces, --rays and --tracer have no effect without --exact-light");
+    session.warn("--bounces, --quality, --rays and --tracer have no effect without --exact-light");
 
   const OuterSide outer = facing(options, light ? light_outer(*light) : scene.outer);
   const auto extractor = session.stages.extractors.create(choice.name, choice.settings);

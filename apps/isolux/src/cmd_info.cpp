@@ -12,6 +12,7 @@
 #include <variant>
 
 #include "commands.h"
+#include "terminal.h"
 #include "volume_options.h"
 
 namespace isolux {
@@ -115,7 +116,7 @@ void add_info_command(CLI::App& program, Session& session) {
       const StoredVolume volume = options->volume.read_as_is(session);
       const Statistics s = std::visit([](const auto& grid) { return statistics(grid.values()); }, volume.values);
       if (options->json) {
-        fmt::print("{}\n", to_json(volume, s).dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
+        put_out(to_json(volume, s).dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
       } else {
         print(volume, s);
       }

@@ -2,27 +2,19 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <isolux/bake/version.h>
-#include <isolux/core/error.h>
 #include <isolux/core/options.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <exception>
-#include <new>
-#include <stdexcept>
 #include <string>
 #include <vector>
 
 #include "commands.h"
-#include "memory.h"
+#include "program.h"
 #include "session.h"
-#include "signals.h"
-#include "terminal.h"
 #include "usage.h"
 
 namespace {
-
-enum ExitStatus { kDone = 0, kFailed = 1, kUsage = 2, kInterrupted = 130 };
 
 /// \throw UsageError if the first word is neither an option nor a command; CLI11 would only say that a command is
 /// missing.
@@ -43,58 +35,40 @@ const CLI::App& chosen(const CLI::App& program) {
   return commands.empty() ? program : *commands.front();
 }
 
+int work(int argc, char** argv, isolux::Session& session, std::string& what) {
+  CLI::App program(
+      "Every isosurface of a volume in true light.\nFirst light a volume (bake), then draw (render, view) or export "
+      "(extract) any isosurface of it.",
+      "isolux");
+  program.set_version_flag("--version", std::string("isolux ") + isolux::kVersion);
+  program.require_subcommand(1);
+  program.fallthrough(false);
+  isolux::add_info_command(program, session);
+  isolux::add_backends_command(program, session);
+  isolux::add_extract_command(program, session);
+  isolux::add_bake_command(program, session);
+  isolux::add_render_command(program, session);
+  isolux::add_probe_command(program, session);
+  isolux::add_convert_command(program, session);
+  isolux::add_companion_commands(program, session);
+  require_command(program, argc, argv);
+  try {
+    program.parse(argc, argv);
+  } catch (const CLI::Success& help) {
+    return isolux::print_help(program, help);
+  } catch (const CLI::ParseError& error) {
+    const CLI::App& app = chosen(program);
+    if (&app != &program) what = app.get_name();
+    throw isolux::UsageError(isolux::explain(error, app));
+  }
+  what = chosen(program).get_name();
+  session.run_action();
+  return isolux::kDone;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
-  isolux::return_large_arrays();
-  isolux::open_standard_streams();
-  const isolux::SignalWatcher signals;
-  std::string what = "command line";
-  const auto fail = [&what](const std::string& why, ExitStatus status) -> int {
-    isolux::complain(what, why);
-    return status;
-  };
-  try {
-    isolux::Session session;
-    session.run.stop = signals.token();
-    CLI::App program(
-        "Every isosurface of a volume in true light.\nFirst light a volume (bake), then draw (render, view) or export "
-        "(extract) any isosurface of it.",
-        "isolux");
-    program.set_version_flag("--version", std::string("isolux ") + isolux::kVersion);
-    program.require_subcommand(1);
-    program.fallthrough(false);
-    isolux::add_info_command(program, session);
-    isolux::add_backends_command(program, session);
-    isolux::add_extract_command(program, session);
-    isolux::add_bake_command(program, session);
-    isolux::add_render_command(program, session);
-    isolux::add_probe_command(program, session);
-    isolux::add_convert_command(program, session);
-    isolux::add_companion_commands(program, session);
-    require_command(program, argc, argv);
-    try {
-      program.parse(argc, argv);
-    } catch (const CLI::Success& help) {
-      return program.exit(help);
-    } catch (const CLI::ParseError& error) {
-      const CLI::App& app = chosen(program);
-      if (&app != &program) what = app.get_name();
-      return fail(isolux::explain(error, app), kUsage);
-    }
-    what = chosen(program).get_name();
-    session.run_action();
-    isolux::flush_output();
-    return kDone;
-  } catch (const isolux::UsageError& error) {
-    return fail(error.what(), kUsage);
-  } catch (const isolux::Cancelled& error) {
-    return fail(error.what(), kInterrupted);
-  } catch (const std::bad_alloc&) {
-    return fail("not enough memory", kFailed);
-  } catch (const std::length_error&) {
-    return fail("not enough memory", kFailed);
-  } catch (const std::exception& error) {
-    return fail(error.what(), kFailed);
-  }
+  return isolux::run_program(
+      "command line", [&](isolux::Session& session, std::string& what) { return work(argc, argv, session, what); });
 }

@@ -7,6 +7,7 @@
 
 #include <charconv>
 #include <cmath>
+#include <limits>
 #include <optional>
 
 #include "session.h"
@@ -88,7 +89,8 @@ int parse_bounces(const std::string& text) {
   if (text == "all") return kAllBounces;
   const auto value = whole(text);
   if (!value || *value < 0)
-    throw UsageError(fmt::format("--bounces = '{}': allowed is 'all' or a whole number of at least 0", text));
+    throw UsageError(fmt::format("--bounces = '{}': allowed is 'all' or a whole number from 0 to {}", text,
+                                 std::numeric_limits<int>::max()));
   return *value;
 }
 

@@ -35,10 +35,13 @@ void complain(const std::string& what, std::string why) {
   tell(fmt::format("isolux: error: {}: {}\n", what, why));
 }
 
+void put_out(const std::string& text) { std::fwrite(text.data(), 1, text.size(), stdout); }
+
 void flush_output() {
   errno = 0;
   if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0)
-    throw IoError(fmt::format("standard output: writing failed: {}", std::strerror(errno)));
+    throw IoError(fmt::format("standard output: {}",
+                              errno != 0 ? std::strerror(errno) : "not all that was printed could be written"));
 }
 
 }  // namespace isolux

@@ -8,8 +8,6 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <exception>
-#include <new>
 #include <optional>
 #include <string>
 #include <tuple>
@@ -21,17 +19,15 @@
 #include "bake_options.h"
 #include "light_options.h"
 #include "parse.h"
+#include "program.h"
 #include "registry_json.h"
 #include "session.h"
-#include "terminal.h"
 #include "usage.h"
 #include "volume_options.h"
 
 namespace {
 
 using namespace isolux;
-
-enum ExitStatus { kDone = 0, kFailed = 1, kUsage = 2 };
 
 /// What X11 and the drivers take.
 constexpr int kLargestWindow = 16384;
@@ -130,8 +126,7 @@ void look(const Words& words, const viewer::AppSettings& settings, Session& sess
   session.timed("view", [&] { viewer::run_app(std::move(document), settings, session.stages); });
 }
 
-int view(int argc, char** argv) {
-  Session session;
+int view(int argc, char** argv, Session& session) {
   Words words;
   CLI::App program("Looks at the isosurfaces of a volume, in local and in global light.", "isolux view");
   program.set_version_flag("--version", std::string("isolux ") + kVersion);
@@ -148,7 +143,7 @@ int view(int argc, char** argv) {
   try {
     program.parse(argc, argv);
   } catch (const CLI::Success& help) {
-    return program.exit(help);
+    return print_help(program, help);
   } catch (const CLI::ParseError& error) {
     throw UsageError(explain(error, program));
   }
@@ -156,25 +151,11 @@ int view(int argc, char** argv) {
   const viewer::AppSettings settings = words.settings(session);
   session.on_run([&] { look(words, settings, session); });
   session.run_action();
-  flush_output();
   return kDone;
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  isolux::open_standard_streams();
-  const auto fail = [](const std::string& why, ExitStatus status) -> int {
-    isolux::complain("view", why);
-    return status;
-  };
-  try {
-    return view(argc, argv);
-  } catch (const isolux::UsageError& error) {
-    return fail(error.what(), kUsage);
-  } catch (const std::bad_alloc&) {
-    return fail("not enough memory", kFailed);
-  } catch (const std::exception& error) {
-    return fail(error.what(), kFailed);
-  }
+  return run_program("view", [&](Session& session, std::string& /*what*/) { return view(argc, argv, session); });
 }

@@ -21,6 +21,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
+const std::string kDisplay = "timeout 120 xvfb-run -a -e /dev/null -s '-screen 0 640x480x24'";
+
 class IsoluxView : public testing::Test {
  protected:
   void SetUp() override {
@@ -42,7 +44,7 @@ class IsoluxView : public testing::Test {
     return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
   }
   int run_with_display(const std::string& arguments) const {
-    return run("timeout 120 xvfb-run -a -e /dev/null -s '-screen 0 640x480x24'", arguments);
+    return run(kDisplay, arguments);
   }
   [[nodiscard]] std::string said() const {
     std::ifstream file(path("err"));
@@ -96,6 +98,15 @@ TEST_F(IsoluxView, WritesItsReport) {
   report << std::ifstream(path("report.json")).rdbuf();
   for (const char* key : {"\"seconds\"", "\"read\"", "\"total\"", "\"peak_memory_bytes\""})
     EXPECT_NE(report.str().find(key), std::string::npos) << report.str();
+}
+
+TEST_F(IsoluxView, EndsCleanlyWhenInterrupted) {
+  if (!has_xvfb()) GTEST_SKIP() << "xvfb-run or xauth is not installed";
+  for (const char* signal : {"INT", "TERM"}) {
+    const std::string interrupted = std::string(" timeout --preserve-status -s ") + signal + " 2";
+    EXPECT_EQ(run(kDisplay + interrupted, "gen:sphere:8 --size 64x64"), 130);
+    EXPECT_EQ(said(), "isolux: error: view: interrupted\n");
+  }
 }
 
 TEST_F(IsoluxView, DrawsLocalAndGlobalLightAndLeaves) {

@@ -5,6 +5,7 @@
 #include <isolux/core/release.h>
 #include <isolux/core/stopwatch.h>
 #include <isolux/resample/fill_unlit.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <bit>
@@ -15,6 +16,20 @@
 #include "standard_error.h"
 
 namespace isolux {
+namespace {
+
+/// The machine says only later, if at all, that there is not so much: after minutes in a grid's first pages. \throw
+/// InvalidInput
+void require_memory(const Index3& texels) {
+  const double bytes = double(sizeof(float)) * texels.x * texels.y * texels.z;
+  const double there = double(sysconf(_SC_PHYS_PAGES)) * double(sysconf(_SC_PAGE_SIZE));
+  if (bytes <= there) return;
+  throw InvalidInput(fmt::format("{}x{}x{} texels take {:.1f} GB, and this machine has {:.1f} GB of memory", texels.x,
+                                 texels.y, texels.z, bytes * 1e-9, there * 1e-9));
+}
+
+}  // namespace
+
 void require_lightable(const Volume& volume, const BakeSettings& settings) {
   require_usable(volume);
   const std::optional<ValueRange>& wanted = settings.isovalues;
@@ -27,6 +42,7 @@ void require_lightable(const Volume& volume, const BakeSettings& settings) {
     throw InvalidInput(fmt::format("isovalue range {}:{}: the values of {} go from {} to {}", wanted->low, wanted->high,
                                    volume.name, range.low, range.high));
   }
+  require_memory(texel_lattice(volume.lattice(), settings).size);
 }
 
 SiteRequest site_request(const BakeSettings& settings, const Lattice& texels, OuterSide outer) {

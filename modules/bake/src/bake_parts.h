@@ -27,7 +27,8 @@ inline constexpr int kFirstRays = 16;
 /// memory allows; 0 if that is too few to iterate over. Without bounces all: they have no links.
 [[nodiscard]] int kept_rays_a_site(const BakeSettings& settings, std::size_t sites, int rays);
 
-/// \throw InvalidInput if the volume is not usable or constant, or the isovalues asked for lie outside its values
+/// \throw InvalidInput if the volume is not usable or constant, the isovalues asked for lie outside its values,
+/// or the texels take more memory than the machine has
 void require_lightable(const Volume& volume, const BakeSettings& settings);
 
 /// What a sampler is asked for, but for the number of sites a texel.

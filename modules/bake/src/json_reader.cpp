@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace isolux {
 
@@ -61,14 +62,16 @@ float JsonObject::positive(const char* key) const {
   const nlohmann::json& value = at(key);
   const float number = value.is_number() ? value.get<float>() : -1.0f;
   if (!(number > 0.0f) || !std::isfinite(number)) {
-    throw InvalidInput(fmt::format("{}: '{}' where a number above 0 is wanted", place(key), value.dump()));
+    throw InvalidInput(fmt::format("{}: '{}' where a number above 0, at most {:.2g}, is wanted", place(key),
+                                   value.dump(), double(std::numeric_limits<float>::max())));
   }
   return number;
 }
 
 std::vector<float> json_numbers(const nlohmann::json& json, std::size_t count, const std::string& place) {
   const auto refuse = [&] {
-    return InvalidInput(fmt::format("{}: '{}' where an array of {} numbers is wanted", place, json.dump(), count));
+    return InvalidInput(fmt::format("{}: '{}' where an array of {} numbers within +-{:.2g} is wanted", place,
+                                    json.dump(), count, double(std::numeric_limits<float>::max())));
   };
   if (!json.is_array() || json.size() != count) throw refuse();
   std::vector<float> numbers;

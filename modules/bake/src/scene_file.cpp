@@ -79,6 +79,9 @@ Light read_light(const json& value, const std::string& place) {
 IsovalueColour read_isovalue_colour(const JsonObject& scene, const char* key) {
   const json& value = scene.at(key);
   if (value.is_array()) return {{{0.0f, scene.colour(key)}}};
+  if (!value.is_object())
+    throw InvalidInput(fmt::format("{}: '{}' where [r,g,b] or {{\"by_isovalue\": [[h,r,g,b], ...]}} is wanted",
+                                   scene.place(key), value.dump()));
   const JsonObject object(value, scene.place(key));
   object.require_keys({"by_isovalue"});
   const json& rows = object.at("by_isovalue");

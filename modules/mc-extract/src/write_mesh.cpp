@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cerrno>
+#include <cstring>
 #include <filesystem>
 #include <fstream>
 
@@ -21,10 +23,11 @@ void require_colours_fit(const IsoMesh& mesh, std::span<const Rgb8> colours) {
 }
 
 void write_bytes(const std::vector<char>& bytes, const std::string& path) {
+  errno = 0;
   std::ofstream file(path, std::ios::binary);
   file.write(bytes.data(), std::streamsize(bytes.size()));
   file.close();
-  if (!file) throw IoError(fmt::format("{}: cannot be written", path));
+  if (!file) throw IoError(fmt::format("{}: writing failed: {}", path, std::strerror(errno)));
 }
 
 }  // namespace mc

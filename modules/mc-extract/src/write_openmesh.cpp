@@ -7,6 +7,8 @@
 #include <isolux/core/error.h>
 
 #include <OpenMesh/Core/IO/MeshIO.hh>
+#include <cerrno>
+#include <cstring>
 #include <fstream>
 #include <locale>
 
@@ -41,6 +43,7 @@ void write_with_openmesh(const IsoMesh& mesh, std::span<const Rgb8> colours, con
   constexpr std::streamsize kDigits = 9;  // as many as tell any two floats apart
   const QuietOpenMesh quiet;
   // OpenMesh reports success where a file cannot be opened and where the disk is full: it gets a stream to be asked.
+  errno = 0;
   std::ofstream file(path, std::ios::binary);
   file.imbue(std::locale::classic());
   Options options;
@@ -68,7 +71,7 @@ void write_with_openmesh(const IsoMesh& mesh, std::span<const Rgb8> colours, con
     written = OpenMesh::IO::write_mesh(mesh, file, extension, options, kDigits);
   }
   file.close();
-  if (!written || !file) throw IoError(fmt::format("{}: cannot be written", path));
+  if (!written || !file) throw IoError(fmt::format("{}: writing failed: {}", path, std::strerror(errno)));
 }
 
 }  // namespace isolux::mc

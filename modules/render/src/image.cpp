@@ -3,8 +3,11 @@
 #include <isolux/render/image.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <cmath>
+#include <cstring>
 #include <fstream>
+#include <new>
 
 #include <stb/stb_image_write.h>
 
@@ -37,12 +40,14 @@ void write_png(const Image& image, const std::string& path) {
   const auto append = [](void* context, void* data, int size) {
     static_cast<std::string*>(context)->append(static_cast<const char*>(data), std::size_t(size));
   };
-  bool written = stbi_write_png_to_func(append, &png, image.width, image.height, 3, bytes.data(), image.width * 3) != 0;
+  const bool made =
+      stbi_write_png_to_func(append, &png, image.width, image.height, 3, bytes.data(), image.width * 3) != 0;
+  if (!made) throw std::bad_alloc();  // all else was checked
+  errno = 0;
   std::ofstream file(path, std::ios::binary);
   file.write(png.data(), std::streamsize(png.size()));
   file.close();
-  written = written && file;
-  if (!written) throw IoError(fmt::format("{}: cannot write the picture", path));
+  if (!file) throw IoError(fmt::format("{}: writing failed: {}", path, std::strerror(errno)));
 }
 
 Image side_by_side(const Image& left, const Image& right, int gap, const Vec3f& colour) {

@@ -33,6 +33,9 @@ class Temporary {
     std::error_code error;
     if (!fs::is_directory(folder, error))
       throw IoError(fmt::format("{}: there is no folder {}", target.string(), folder.string()));
+    if (const long most = pathconf(folder.c_str(), _PC_NAME_MAX);
+        most > 0 && target.filename().string().size() > std::size_t(most))
+      throw IoError(fmt::format("{}: cannot be written: {}", target.string(), std::strerror(ENAMETOOLONG)));
     if (fs::is_directory(target, error)) throw IoError(fmt::format("{}: a directory", target.string()));
     // The name's end stays last: libraries choose the format by it.
     std::string end = target.filename().string();

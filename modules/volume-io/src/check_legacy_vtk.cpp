@@ -1,6 +1,7 @@
 #include "files.h"
 #include "format_checks.h"
 #include "nrrd_text.h"
+#include "number_text.h"
 
 #include <fmt/format.h>
 #include <isolux/core/error.h>
@@ -8,7 +9,6 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
-#include <fstream>
 #include <map>
 
 namespace isolux::detail {
@@ -54,11 +54,14 @@ class VtkHeader {
   std::size_t end_ = 0;
 };
 
-std::size_t voxel_bytes(const std::string& path, const std::string& type) {
-  static const std::map<std::string, std::size_t> types = {
-      {"char", 1}, {"unsigned_char", 1}, {"short", 2},        {"unsigned_short", 2},
-      {"int", 4},  {"unsigned_int", 4},  {"float", 4},        {"double", 8},
-      {"long", 8}, {"unsigned_long", 8}, {"vtktypeint64", 8}, {"vtktypeuint64", 8}};
+ScalarType voxel_type(const std::string& path, const std::string& type) {
+  static const std::map<std::string, ScalarType> types = {
+      {"char", ScalarType::kInt8},          {"unsigned_char", ScalarType::kUint8},
+      {"short", ScalarType::kInt16},        {"unsigned_short", ScalarType::kUint16},
+      {"int", ScalarType::kInt32},          {"unsigned_int", ScalarType::kUint32},
+      {"float", ScalarType::kFloat32},      {"double", ScalarType::kFloat64},
+      {"long", ScalarType::kInt64},         {"unsigned_long", ScalarType::kUint64},
+      {"vtktypeint64", ScalarType::kInt64}, {"vtktypeuint64", ScalarType::kUint64}};
   const auto it = types.find(type);
   if (it == types.end())
     throw InvalidInput(
@@ -68,17 +71,16 @@ std::size_t voxel_bytes(const std::string& path, const std::string& type) {
   return it->second;
 }
 
-std::uint64_t words_behind(const std::string& path, std::uint64_t offset, std::uint64_t most) {
-  std::ifstream file(path, std::ios::binary);
-  file.seekg(std::streamoff(offset));
-  std::uint64_t words = 0;
-  bool inside = false;
-  for (int c = file.get(); c != std::ifstream::traits_type::eof() && words < most; c = file.get()) {
-    const bool blank = c == ' ' || c == '\n' || c == '\r' || c == '\t';
-    if (!blank && !inside) ++words;
-    inside = !blank;
+/// ITK takes what it cannot read of a text, and all behind it, for 0. \throw IoError, InvalidInput
+void check_text(const std::string& path, std::uint64_t offset, std::uint64_t count, ScalarType type) {
+  NumberText text(path, offset, " \n\r\t\f\v");
+  for (std::uint64_t i = 0; i < count; ++i) {
+    if (text.next().empty()) throw IoError(fmt::format("{}: {} numbers of data expected, {} found", path, count, i));
+    const double value = text.number(type != ScalarType::kFloat32);
+    if (!holds(type, value))
+      throw InvalidInput(
+          fmt::format("{}: {}, value {} of the data, is no finite {}", path, value, i, scalar_type_name(type)));
   }
-  return words;
 }
 
 }  // namespace
@@ -119,15 +121,15 @@ CheckedHeader check_legacy_vtk(const std::string& path) {
   if (count == 0) throw InvalidInput(fmt::format("{}: VTK has no DIMENSIONS", path));
   if (words.size() < 3 || words.size() > 4 || (words.size() == 4 && words[3] != "1"))
     throw InvalidInput(fmt::format("{}: VTK SCALARS need a name, a type and one component", path));
-  const std::size_t width = voxel_bytes(path, words[2]);
+  const ScalarType type = voxel_type(path, words[2]);
   if (header.line().front() != "LOOKUP_TABLE")
     throw InvalidInput(fmt::format("{}: VTK SCALARS without a LOOKUP_TABLE line", path));
   // Further attributes may follow: the format says so.
-  const bool text = encoding == "ASCII";
-  const std::uint64_t needed = text ? count : count * width;
-  const std::uint64_t found = text ? words_behind(path, header.end(), needed) : file_size - header.end();
-  if (found < needed)
-    throw IoError(fmt::format("{}: {} {} of data expected, {} found", path, needed, text ? "numbers" : "bytes", found));
+  if (encoding == "ASCII") {
+    check_text(path, header.end(), count, type);
+  } else if (const auto needed = count * bytes_per_scalar(type); file_size - header.end() < needed) {
+    throw IoError(fmt::format("{}: {} bytes of data expected, {} found", path, needed, file_size - header.end()));
+  }
   return {.size = {int(sizes[0]), int(sizes[1]), int(sizes[2])}};
 }
 

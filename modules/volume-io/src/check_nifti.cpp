@@ -117,6 +117,8 @@ bool is_nifti(const std::string& path) {
   }
 }
 
+std::string_view nifti_extension(const std::string& path) { return is_gzip(path) ? ".nii.gz" : ".nii"; }
+
 CheckedHeader check_nifti(const std::string& path) {
   const std::uint64_t file_size = require_file(path);
   const std::string bytes = header_bytes(path);
@@ -124,12 +126,6 @@ CheckedHeader check_nifti(const std::string& path) {
   if (!found)
     throw InvalidInput(
         fmt::format("{}: no NIfTI file: supported are single files of version 1 ('n+1') and 2 ('n+2')", path));
-  // ITK tells compression by the name.
-  if (!has_extension(path, is_gzip(path) ? ".nii.gz" : ".nii"))
-    throw InvalidInput(
-        fmt::format("{}: a NIfTI file is read under a name that ends in .nii, or in .nii.gz if it is "
-                    "compressed",
-                    path));
   const Fields f = fields(HeaderBytes(bytes, found->big_endian), found->second);
   if (f.dim[0] < 1 || f.dim[0] > 7)
     throw InvalidInput(fmt::format("{}: NIfTI dim[0] is {}: allowed is 1 to 7", path, f.dim[0]));

@@ -15,6 +15,7 @@
 #include <csignal>
 #include <cstring>
 #include <mutex>
+#include <new>
 
 namespace isolux::detail {
 namespace {
@@ -40,7 +41,7 @@ void write_all(int file, const void* data, std::size_t bytes) {
   }
 }
 
-[[noreturn]] void be_the_child(int data, int messages, std::chrono::seconds time_limit,
+[[noreturn]] void be_the_child(const std::string& what, int data, int messages, std::chrono::seconds time_limit,
                                const std::function<void(const SendBytes& send)>& work) {
   prctl(PR_SET_PDEATHSIG, SIGKILL);
   for (const int number : {SIGINT, SIGTERM, SIGHUP}) std::signal(number, SIG_DFL);
@@ -60,6 +61,9 @@ void write_all(int file, const void* data, std::size_t bytes) {
   } catch (const InvalidInput& problem) {
     status = kInvalidInput;
     message = problem.what();
+  } catch (const std::bad_alloc&) {
+    status = kIoError;
+    message = fmt::format("{}: the memory does not suffice for so many voxels", what);
   } catch (const std::exception& problem) {
     status = kIoError;
     message = problem.what();
@@ -168,7 +172,7 @@ pid_t start(const std::string& what, Pipe& data, Pipe& messages, std::chrono::se
   fcntl(data.ends[1], F_SETPIPE_SZ, kPipeBytes);
   const pid_t id = fork();
   if (id < 0) throw IoError(fmt::format("{}: no process to read it in: {}", what, std::strerror(errno)));
-  if (id == 0) be_the_child(data.ends[1], messages.ends[1], time_limit, work);
+  if (id == 0) be_the_child(what, data.ends[1], messages.ends[1], time_limit, work);
   data.close_end(1);
   messages.close_end(1);
   return id;

@@ -20,6 +20,8 @@ struct CheckedHeader {
 /// what is allowed
 [[nodiscard]] bool is_nifti(const std::string& path);
 [[nodiscard]] CheckedHeader check_nifti(const std::string& path);
+/// What the name of such a file has to end in for ITK: it tells compression by that.
+[[nodiscard]] std::string_view nifti_extension(const std::string& path);
 
 [[nodiscard]] bool is_meta_image(const std::string& path);
 [[nodiscard]] CheckedHeader check_meta_image(const std::string& path, const ReadOptions& options);

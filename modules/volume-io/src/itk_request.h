@@ -14,7 +14,7 @@ enum class ItkFormat : std::uint8_t { kNifti, kMetaImage, kLegacyVtk, kTiff, kDi
 struct ItkRequest {
   ItkFormat format = ItkFormat::kNifti;
   std::string source;              ///< as the user named it
-  std::vector<std::string> files;  ///< slices or pages; of other formats the one file
+  std::vector<std::string> files;  ///< slices or pages; of other formats the one file, under a name that ITK accepts
   Index3 size{0};                  ///< by our own look at the headers
   std::optional<double> gap;       ///< between DICOM slices, if the user says, world units
 };

@@ -1,10 +1,10 @@
 #include "files.h"
 #include "nrrd_header.h"
+#include "number_text.h"
 
 #include <fmt/format.h>
 #include <isolux/core/error.h>
 
-#include <charconv>
 #include <fstream>
 
 namespace isolux::detail {
@@ -56,42 +56,14 @@ AnyValues read_gzip(const NrrdHeader& header, std::uint64_t offset, std::uint64_
   return values;
 }
 
-// Numbers separated by blanks or commas.
-class NumberText {
- public:
-  NumberText(const NrrdHeader& header, std::uint64_t offset) : path_(header.data_file), file_(path_, std::ios::binary) {
-    file_.seekg(std::streamoff(offset));
-  }
-  // The next word; empty at the end.
-  const std::string& next() {
-    word_.clear();
-    for (int c = file_.get(); c != std::ifstream::traits_type::eof(); c = file_.get()) {
-      const bool between = c == ' ' || c == '\n' || c == '\r' || c == '\t' || c == ',' || c == '\f' || c == '\v';
-      if (between && !word_.empty()) break;
-      if (!between) word_ += char(c);
-      if (word_.size() > 400) throw IoError(fmt::format("{}: the data hold no numbers as text", path_));
-    }
-    return word_;
-  }
-
- private:
-  std::string path_;
-  std::ifstream file_;
-  std::string word_;
-};
-
 std::vector<float> read_text(const NrrdHeader& header, std::uint64_t offset, std::uint64_t count, const Run& run) {
   const std::uint64_t size = require_file(header.data_file);
   if (count > size) throw IoError(fmt::format("{}: {} numbers expected in {} bytes", header.data_file, count, size));
-  NumberText text(header, offset + std::uint64_t(header.byte_skip));
+  NumberText text(header.data_file, offset + std::uint64_t(header.byte_skip), " \n\r\t,\f\v");
   std::vector<float> values;
   values.reserve(count);
   for (std::string word = text.next(); !word.empty(); word = text.next()) {
-    double value = 0.0;
-    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
-    if (error != std::errc() || end != word.data() + word.size())
-      throw IoError(fmt::format("{}: '{}', value {} of the data, is not a number", header.data_file, word.substr(0, 40),
-                                values.size()));
+    const double value = text.number();
     if (values.size() == count)
       throw IoError(fmt::format("{}: {} numbers expected, more found", header.data_file, count));
     values.push_back(float(value));

@@ -51,6 +51,21 @@ void swap_bytes(std::span<std::byte> bytes) {
     std::reverse(bytes.begin() + std::ptrdiff_t(i), bytes.begin() + std::ptrdiff_t(i + sizeof(T)));
 }
 
+/// Numbers `first` and on of `path`'s data as floats. \throw InvalidInput
+template <class T>
+void convert(std::span<const T> values, std::span<float> floats, std::uint64_t first, const std::string& path) {
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    floats[i] = float(values[i]);
+    if constexpr (std::is_same_v<T, double>) {
+      if (!fits_float(values[i]))
+        throw InvalidInput(
+            fmt::format("{}: {}, value {} of the data, is beyond what float32 holds, in which volumes "
+                        "are kept (+-{:.5g})",
+                        path, values[i], first + i, double(std::numeric_limits<float>::max())));
+    }
+  }
+}
+
 /// Numbers of type T in the file, read into the same or into floats.
 template <class T, class Out>
 std::vector<Out> decode(ByteSource& source, bool big_endian, std::uint64_t count, const std::string& path,
@@ -76,9 +91,7 @@ std::vector<Out> decode(ByteSource& source, bool big_endian, std::uint64_t count
                                 done * sizeof(T) + got));
     }
     if (big_endian && sizeof(T) > 1) swap_bytes<T>(bytes);
-    if constexpr (kConverts)
-      std::transform(buffer.begin(), buffer.begin() + std::ptrdiff_t(wanted), out.begin(),
-                     [](T value) { return float(value); });
+    if constexpr (kConverts) convert(std::span<const T>(buffer).first(wanted), out, done, path);
     done += wanted;
     if (run.progress) run.progress("read", double(done) / double(count));
   }
@@ -117,6 +130,17 @@ std::uint64_t checked_count(const std::string& path, std::span<const std::int64_
     count *= std::uint64_t(size);
   }
   return count;
+}
+
+bool fits_float(double value) { return std::isfinite(float(value)) || !std::isfinite(value); }
+
+bool holds(ScalarType type, double value) {
+  return with_type(type, [&](auto zero) {
+    using T = decltype(zero);
+    const bool in_range =
+        value >= double(std::numeric_limits<T>::lowest()) && value <= double(std::numeric_limits<T>::max());
+    return in_range && (std::is_floating_point_v<T> || std::floor(value) == value);
+  });
 }
 
 AnyValues decode_scalars(ByteSource& source, const ScalarLayout& layout, std::uint64_t count, VoxelForm form,

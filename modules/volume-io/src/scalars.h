@@ -30,8 +30,14 @@ struct ScalarLayout {
 using AnyValues = std::variant<std::vector<float>, std::vector<std::uint8_t>, std::vector<std::int8_t>,
                                std::vector<std::uint16_t>, std::vector<std::int16_t>>;
 
-/// Reads `count` numbers, in `form`. \throw IoError naming `path` and the bytes expected and found if there are fewer;
-/// Cancelled. Memory follows what was read, not what was promised.
+/// Whether a number has a nearest float: infinities and NaN have one, finite numbers beyond the largest have not.
+[[nodiscard]] bool fits_float(double value);
+
+/// Whether a number is finite and one of `type`: whole and within its range, or no larger than its largest.
+[[nodiscard]] bool holds(ScalarType type, double value);
+
+/// Reads `count` numbers, in `form`. \throw InvalidInput for a number that does not fit a float; IoError naming `path`
+/// and the bytes expected and found if there are fewer; Cancelled. Memory follows what was read, not what was promised.
 [[nodiscard]] AnyValues decode_scalars(ByteSource& source, const ScalarLayout& layout, std::uint64_t count,
                                        VoxelForm form, const std::string& path, const Run& run);
 

@@ -6,6 +6,7 @@
 #include <zlib.h>
 
 #include <limits>
+#include <type_traits>
 
 namespace isolux {
 namespace {
@@ -16,11 +17,11 @@ std::string header(const std::string& fields) { return "NRRD0004\n" + fields + "
 
 const std::string kSmall = "dimension: 3\nsizes: 2 1 2\n";
 
-// Values at both ends of a type, and what a float holds of them.
+// Values at both ends of a type, or of what is kept, and what a float holds of them.
 template <class T>
 void expect_type_is_read(const test::TemporaryFolder& folder, const std::vector<std::string>& names) {
-  using Limits = std::numeric_limits<T>;
-  const std::vector<T> values = {Limits::lowest(), T(0), T(1), T(Limits::is_integer ? Limits::max() : T(0.1))};
+  using Limits = std::numeric_limits<std::conditional_t<std::is_same_v<T, double>, float, T>>;
+  const std::vector<T> values = {T(Limits::lowest()), T(0), T(1), T(Limits::is_integer ? Limits::max() : T(0.1))};
   for (const auto& name : names) {
     for (const bool big : {false, true}) {
       const std::string fields =
@@ -48,6 +49,22 @@ TEST(Nrrd, ReadsEveryTypeUnderEachNameInBothEndians) {
       folder, {"ulonglong", "unsigned long long", "unsigned long long int", "uint64", "uint64_t"});
   expect_type_is_read<float>(folder, {"float"});
   expect_type_is_read<double>(folder, {"double"});
+}
+
+// Infinities are values like others; a number that only becomes one is an error.
+TEST(Nrrd, RefusesDoublesThatNoFloatHolds) {
+  const test::TemporaryFolder folder;
+  const std::string fields = "type: double\n" + kSmall + "endian: little\nencoding: raw\n";
+  const auto written = [&](double last) {
+    return folder.write("a.nrrd", header(fields).append(bytes_of<double>({1.0, 2.0, 3.0, last})));
+  };
+  EXPECT_THAT(test::reading_error(written(-1e300)), testing::AllOf(HasSubstr("a.nrrd: -1e+300, value 3 of the data"),
+                                                                   HasSubstr("beyond what float32 holds")));
+  EXPECT_EQ(read_volume(written(std::numeric_limits<double>::infinity())).values.values()[3],
+            std::numeric_limits<float>::infinity());
+  EXPECT_EQ(read_volume(written(1e-300)).values.values()[3], 0.0f);
+  const auto text = folder.write("b.nrrd", header("type: double\n" + kSmall + "encoding: text\n").append("1 2 1e39 3"));
+  EXPECT_THAT(test::reading_error(text), HasSubstr("b.nrrd: '1e39', value 2 of the data, is beyond"));
 }
 
 Volume example(ScalarType type) {

@@ -5,6 +5,7 @@
 #include <isolux/volume_io/atomic_file.h>
 #include <isolux/volume_io/read.h>
 
+#include <stop_token>
 #include <utility>
 
 #include "app/window.h"
@@ -22,8 +23,10 @@ class App final : public WindowListener {
         viewer_(std::move(document), settings.viewer, stages, Window::wake) {}
 
   void run() {
+    const std::stop_callback wake(settings_.viewer.run.stop, Window::wake);
     int drawn = 0;
     while (!window_.closing() && !viewer_.quit()) {
+      throw_if_stopped(settings_.viewer.run);
       const bool settled = viewer_.settled();
       if (viewer_.update() || dirty_ || settings_.frames > 0) {
         draw();

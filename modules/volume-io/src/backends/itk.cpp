@@ -3,6 +3,7 @@
 #include "../format_checks.h"
 #include "../itk_request.h"
 #include "../make_volume.h"
+#include "../named_link.h"
 #include "../received_volume.h"
 
 #include <dlfcn.h>
@@ -10,6 +11,7 @@
 #include <isolux/core/error.h>
 #include <isolux/volume_io/volume_reader.h>
 
+#include <array>
 #include <chrono>
 #include <cmath>
 
@@ -60,19 +62,47 @@ Plan folder_plan(const std::string& source, const ReadOptions& options) {
   return tiff_plan(source, pages, options);
 }
 
+/// By content, then by extension.
+ItkFormat format_of(const std::string& source) {
+  struct Known {
+    ItkFormat format;
+    bool (*is)(const std::string&);
+    std::string_view extension;
+  };
+  static constexpr std::array<Known, 7> kKnown = {{{ItkFormat::kDicom, detail::is_dicom, ".dcm"},
+                                                   {ItkFormat::kTiff, detail::is_tiff, ".tif"},
+                                                   {ItkFormat::kTiff, detail::is_tiff, ".tiff"},
+                                                   {ItkFormat::kLegacyVtk, detail::is_legacy_vtk, ".vtk"},
+                                                   {ItkFormat::kMetaImage, detail::is_meta_image, ".mha"},
+                                                   {ItkFormat::kMetaImage, detail::is_meta_image, ".mhd"},
+                                                   {ItkFormat::kNifti, detail::is_nifti, ".nii"}}};
+  for (const Known& known : kKnown)
+    if (known.is(source)) return known.format;
+  for (const Known& known : kKnown)
+    if (detail::has_extension(source, known.extension)) return known.format;
+  return ItkFormat::kNifti;
+}
+
 Plan plan(const std::string& source, const ReadOptions& options) {
   if (detail::is_directory(source)) return folder_plan(source, options);
   (void)detail::require_file(source);
-  if (detail::is_dicom(source)) return dicom_plan(source, {source}, options);
-  if (detail::is_tiff(source)) return tiff_plan(source, {source}, options);
-  const auto one_file = [&](ItkFormat format, Index3 size, std::string_view space) {
+  const ItkFormat format = format_of(source);
+  const auto one_file = [&](Index3 size, std::string_view space) {
     return Plan{{.format = format, .source = source, .files = {source}, .size = size, .gap = {}}, space};
   };
-  if (detail::is_legacy_vtk(source))
-    return one_file(ItkFormat::kLegacyVtk, detail::check_legacy_vtk(source).size, kPlain);
-  if (detail::is_meta_image(source))
-    return one_file(ItkFormat::kMetaImage, detail::check_meta_image(source, options).size, kAnatomical);
-  return one_file(ItkFormat::kNifti, detail::check_nifti(source).size, kAnatomical);
+  switch (format) {
+    case ItkFormat::kDicom:
+      return dicom_plan(source, {source}, options);
+    case ItkFormat::kTiff:
+      return tiff_plan(source, {source}, options);
+    case ItkFormat::kLegacyVtk:
+      return one_file(detail::check_legacy_vtk(source).size, kPlain);
+    case ItkFormat::kMetaImage:
+      return one_file(detail::check_meta_image(source, options).size, kAnatomical);
+    case ItkFormat::kNifti:
+      break;
+  }
+  return one_file(detail::check_nifti(source).size, kAnatomical);
 }
 
 /// In the child. ITK's libraries take 25 ms and 20 MB to be there, so that only who reads with them loads them. The
@@ -115,7 +145,10 @@ class ItkReader final : public VolumeReader {
 
   [[nodiscard]] StoredVolume read(const std::string& source, const ReadOptions& options,
                                   const Run& run) const override {
-    const Plan what = plan(source, options);
+    Plan what = plan(source, options);
+    std::optional<detail::NamedLink> named;
+    if (what.request.format == ItkFormat::kNifti && !detail::has_extension(source, detail::nifti_extension(source)))
+      what.request.files = {named.emplace(source, detail::nifti_extension(source)).path()};
     const auto limit = std::chrono::seconds(std::int64_t(std::ceil(options_.time_limit)));
     detail::ReceivedVolume volume;
     detail::run_in_child(

@@ -55,18 +55,24 @@ ScalarType scalar_type(const std::string& path, const itk::ImageIOBase& io) {
   }
 }
 
+/// `path` may be another name of `file`, the one that messages give.
 template <class Io>
-typename Io::Pointer open(const std::string& path) {
+typename Io::Pointer open(const std::string& file, const std::string& path) {
   const auto io = Io::New();
   io->SetFileName(path);
   try {
     io->ReadImageInformation();
   } catch (const itk::ExceptionObject& problem) {
-    throw IoError(fmt::format("{}: ITK cannot read it: {}", path, problem.GetDescription()));
+    throw IoError(fmt::format("{}: ITK cannot read it: {}", file, problem.GetDescription()));
   }
   if (io->GetNumberOfComponents() != 1)
-    throw InvalidInput(fmt::format("{}: {} numbers a voxel: a volume has one", path, io->GetNumberOfComponents()));
+    throw InvalidInput(fmt::format("{}: {} numbers a voxel: a volume has one", file, io->GetNumberOfComponents()));
   return io;
+}
+
+template <class Io>
+typename Io::Pointer open(const std::string& file) {
+  return open<Io>(file, file);
 }
 
 Lattice lattice_of(const std::string& path, const itk::ImageIOBase& io) {
@@ -103,10 +109,11 @@ void send_pixels(const std::string& path, itk::ImageIOBase& io, const SendBytes&
 }
 
 template <class Io>
-void send_file(const std::string& path, const SendBytes& send) {
-  const auto io = open<Io>(path);
-  send_value(send, SentVolume{.lattice = lattice_of(path, *io), .stored_type = scalar_type(path, *io), .blocks = 1});
-  send_pixels(path, *io, send);
+void send_file(const ItkRequest& request, const SendBytes& send) {
+  const std::string& file = request.source;
+  const auto io = open<Io>(file, request.files.front());
+  send_value(send, SentVolume{.lattice = lattice_of(file, *io), .stored_type = scalar_type(file, *io), .blocks = 1});
+  send_pixels(file, *io, send);
 }
 
 std::vector<Slice> dicom_slices(const std::string& source, const std::vector<std::string>& files) {
@@ -149,11 +156,11 @@ extern "C" void isolux_itk_send(const ItkRequest& request, const SendBytes& send
   itk::MultiThreaderBase::SetGlobalDefaultNumberOfThreads(1);
   switch (request.format) {
     case ItkFormat::kNifti:
-      return send_file<itk::NiftiImageIO>(request.source, send);
+      return send_file<itk::NiftiImageIO>(request, send);
     case ItkFormat::kMetaImage:
-      return send_file<itk::MetaImageIO>(request.source, send);
+      return send_file<itk::MetaImageIO>(request, send);
     case ItkFormat::kLegacyVtk:
-      return send_file<itk::VTKImageIO>(request.source, send);
+      return send_file<itk::VTKImageIO>(request, send);
     case ItkFormat::kTiff:
       return send_tiffs(request.files, request.size, send);
     case ItkFormat::kDicom:

@@ -29,11 +29,11 @@ Lattice stack_slices(const std::string& source, std::vector<Slice>& slices, std:
   lattice.frame.origin = slices.front().lattice.frame.origin;
   if (slices.size() == 1) return lattice;
   lattice.size.z = int(slices.size());
+  const Vec3 step = (slices.back().lattice.frame.origin - lattice.frame.origin) / double(slices.size() - 1);
   if (gap) {
-    lattice.frame.axes[2] = normal * *gap;
+    lattice.frame.axes[2] = (glm::length(step) > 0.0 ? glm::normalize(step) : normal) * *gap;
     return lattice;
   }
-  const Vec3 step = (slices.back().lattice.frame.origin - lattice.frame.origin) / double(slices.size() - 1);
   for (std::size_t i = 0; i < slices.size(); ++i) {
     const double off = glm::distance(slices[i].lattice.frame.origin, lattice.frame.origin + double(i) * step);
     // Positions are rounded to a micrometre or so by scanners; a hundredth of the gap is no rounding any more.
