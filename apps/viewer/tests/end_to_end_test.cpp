@@ -43,9 +43,7 @@ class IsoluxView : public testing::Test {
     const int status = std::system(command.c_str());
     return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
   }
-  int run_with_display(const std::string& arguments) const {
-    return run(kDisplay, arguments);
-  }
+  int run_with_display(const std::string& arguments) const { return run(kDisplay, arguments); }
   [[nodiscard]] std::string said() const {
     std::ifstream file(path("err"));
     std::ostringstream text;
