@@ -15,7 +15,7 @@ namespace {
 Sites lattice_sites(int an_axis) {
   Sites sites;
   for (int q = 0; q < an_axis * an_axis * an_axis; ++q) {
-    const Vec3f place(float(q % an_axis), float(q / an_axis % an_axis), float(q / an_axis / an_axis));
+    const Vec3f place(Index3(q % an_axis, q / an_axis % an_axis, q / an_axis / an_axis));
     sites.positions.push_back((place + 0.5f) * (8.0f / float(an_axis)));
     sites.isovalues.push_back(0.0f);
     sites.normals.emplace_back(0.0f, 0.0f, 1.0f);
