@@ -58,6 +58,15 @@ TEST_P(OpenIntegratingSphere, IsLitRightThroughTheWholePipeline) {
 
 INSTANTIATE_TEST_SUITE_P(Albedo, OpenIntegratingSphere, testing::Values(0.5f, 0.8f));
 
+// Nothing is brighter than a white sky where all surfaces are white; an acceleration of the bounces made it 1.05.
+TEST(WhiteFurnace, IsNowhereBrighterThanItsSky) {
+  const Volume volume = read_volume("gen:noise:11");
+  BakeSettings settings;
+  settings.trace.rays = 32;
+  const BakeResult baked = bake(volume, scene_of_albedo(1.0f), settings, builtin_stages(), {});
+  for (const float e : baked.light.values) EXPECT_LE(e, 1.0f + 1e-6f);
+}
+
 TEST(Bake, LightsAConvexLevelSetByOneOnEveryLattice) {
   const Volume volume = read_volume("gen:sphere:24");
   const Stages stages = builtin_stages();

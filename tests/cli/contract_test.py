@@ -203,6 +203,16 @@ class Extract(CommandLineTest):
             # where the vertices sit, that may catch 1 ray of 64 (code 229).
             self.assertTrue(all(229 <= code <= 231 for p in points for code in p[6:]))
 
+    def test_what_shines_is_seen_to_shine(self):
+        """In the dark a ball shows what it emits: .3, whose sRGB code is 149."""
+        self.write("scene.json", '{"environment": {"type": "uniform", "radiance": [0, 0, 0]}, "emission": [0.3, 0.3, 0.3]}')
+        scene = ("--scene", "scene.json")
+        self.succeed("bake", "gen:sphere:16", "-o", "light.nrrd", "--rays", 4, "--bounces", 0, "--quiet", *scene)
+        for name, how in (("baked", ("--light", "light.nrrd")), ("exact", ("--exact-light", "--rays", 64, "--bounces", 0, *scene))):
+            self.succeed("extract", "gen:sphere:16", "--iso", -0.3, "-o", "mesh.ply", *how)
+            _, points, _ = ply(self.path("mesh.ply"))
+            self.assertTrue(all(149 <= code <= 151 for p in points for code in p[6:]), name)
+
     def test_isovalue_outside_the_range_is_an_empty_mesh_and_a_warning(self):
         done = self.succeed("extract", "gen:sphere:8", "--iso", 5, "-o", "mesh.ply")
         self.assertIn("isolux: warning: isovalue 5 lies outside", done.stderr)

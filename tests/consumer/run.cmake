@@ -10,6 +10,9 @@ execute_process(COMMAND ${CMAKE_COMMAND} --build ${BUILD}/consumer/build OUTPUT_
 
 # A file of a format whose library is loaded when it is first needed, where it was built in.
 file(GLOB_RECURSE loaded ${prefix}/*isolux_volume_io_itk*)
+if(WITH_ITK AND NOT loaded)
+  message(FATAL_ERROR "the library that reads with ITK is not installed")
+endif()
 set(volume gen:sphere:8)
 if(loaded)
   set(volume ${BUILD}/consumer/eight.mha)

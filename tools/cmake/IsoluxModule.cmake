@@ -17,7 +17,11 @@ include(GNUInstallDirs)
 get_filename_component(ISOLUX_ROOT ${CMAKE_CURRENT_LIST_DIR}/../.. ABSOLUTE)
 
 set(ISOLUX_VERSION 0.1.0)
-set(ISOLUX_LOADED_DIR ${CMAKE_INSTALL_LIBDIR}/isolux)  # of libraries that are loaded when first needed
+# Libraries that are loaded when first needed: where they are installed, how programs installed beside them get there, and the folder that
+# the same way leads to from the build tree's apps.
+set(ISOLUX_LOADED_DIR ${CMAKE_INSTALL_LIBDIR}/isolux)
+file(RELATIVE_PATH ISOLUX_TO_LOADED ${CMAKE_INSTALL_FULL_BINDIR} ${CMAKE_INSTALL_FULL_LIBDIR}/isolux)
+get_filename_component(ISOLUX_LOADED_BUILD_DIR ${CMAKE_BINARY_DIR}/apps/any/${ISOLUX_TO_LOADED} ABSOLUTE)
 option(ISOLUX_TESTS "Build the tests" ON)
 option(ISOLUX_BENCHES "Build the kernel benchmarks" OFF)
 option(ISOLUX_EXAMPLES "Build the examples of the modules' READMEs" ON)
@@ -58,9 +62,8 @@ function(isolux_flags target)
   target_compile_definitions(${target} PRIVATE
     "HWY_DISABLED_TARGETS=(HWY_SSSE3|HWY_SVE|HWY_SVE2|HWY_SVE_256|HWY_SVE2_128|HWY_RVV)")
   # One search path for where it is built and where it is installed: CMake pads those it edits, and an empty entry means the current folder.
-  file(RELATIVE_PATH loaded ${CMAKE_CURRENT_BINARY_DIR} ${CMAKE_BINARY_DIR}/${ISOLUX_LOADED_DIR})
-  set_target_properties(${target} PROPERTIES BUILD_WITH_INSTALL_RPATH ON
-    INSTALL_RPATH "$ORIGIN/../${ISOLUX_LOADED_DIR};$ORIGIN/${loaded}")
+  set(path ${ISOLUX_LOADED_BUILD_DIR} ${CMAKE_BUILD_RPATH} ${CMAKE_INSTALL_RPATH})
+  set_target_properties(${target} PROPERTIES BUILD_WITH_INSTALL_RPATH ON INSTALL_RPATH_USE_LINK_PATH ON INSTALL_RPATH "${path}")
   set_target_properties(${target} PROPERTIES UNITY_BUILD ${ISOLUX_UNITY} UNITY_BUILD_BATCH_SIZE 6)
   if(target MATCHES "_tests$")
     target_compile_options(${target} PRIVATE ${ISOLUX_TEST_FLAGS})
@@ -70,6 +73,13 @@ function(isolux_flags target)
       $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized>)  # GCC 12: false positives in the standard library's own headers
     target_link_options(${target} PRIVATE -fsanitize=${ISOLUX_SANITIZE})
   endif()
+endfunction()
+
+# A program that is installed. It finds libraries that are loaded by where it is itself, so that an installation can be moved.
+function(isolux_install_program target)
+  set(path $ORIGIN/${ISOLUX_TO_LOADED} ${CMAKE_INSTALL_RPATH})
+  set_target_properties(${target} PROPERTIES INSTALL_RPATH "${path}")
+  install(TARGETS ${target} COMPONENT isolux)
 endfunction()
 
 # Links packages; missing ones end the configuration with the Debian package's name left to the README.
@@ -92,22 +102,35 @@ function(isolux_need_module name)
 endfunction()
 
 # The shared library of src/loaded/KEY, which the backend KEY loads by its file name, ISOLUX_KEY_LIBRARY, when it is first needed: programs
-# begin without its package. It is found by the program's RUNPATH, which ours have from isolux_flags and others' from the
-# installed module.
+# begin without its package. It is found by the program's RUNPATH: isolux_flags and isolux_install_program
+# give it to ours, the module's link options to others'.
 function(_isolux_loaded_library name id key package)
   set(library isolux_${id}_${key})
   file(GLOB sources CONFIGURE_DEPENDS src/loaded/${key}/*.cpp)
   add_library(${library} MODULE ${sources})
-  set_target_properties(${library} PROPERTIES OUTPUT_NAME ${library}-${ISOLUX_VERSION} LIBRARY_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/${ISOLUX_LOADED_DIR})
+  set_target_properties(${library} PROPERTIES OUTPUT_NAME ${library}-${ISOLUX_VERSION}
+    LIBRARY_OUTPUT_DIRECTORY $<1:${ISOLUX_LOADED_BUILD_DIR}>)
   target_link_libraries(${library} PRIVATE isolux::core)
   isolux_flags(${library})
+  set_target_properties(${library} PROPERTIES INSTALL_RPATH "${CMAKE_INSTALL_RPATH}")
+  if(NOT ISOLUX_SANITIZE)
+    target_link_options(${library} PRIVATE LINKER:-z,defs)  # what is missing is missing now, not when it is loaded
+  endif()
   isolux_link(${library} PRIVATE fmt ${package})
   string(TOUPPER ${key} macro)
   target_include_directories(${library} PRIVATE include)
   target_compile_definitions(isolux_${id} PRIVATE ISOLUX_${macro}_LIBRARY="$<TARGET_FILE_NAME:${library}>")
   target_link_libraries(isolux_${id} PRIVATE ${CMAKE_DL_LIBS})
   add_dependencies(isolux_${id} ${library})
-  target_link_options(isolux_${id} INTERFACE "$<INSTALL_INTERFACE:LINKER:-rpath,$<INSTALL_PREFIX>/${ISOLUX_LOADED_DIR}>")
+  set(installed ${ISOLUX_LOADED_DIR})
+  if(NOT IS_ABSOLUTE ${installed})
+    set(installed $<INSTALL_PREFIX>/${installed})
+  endif()
+  target_link_options(isolux_${id} INTERFACE "$<INSTALL_INTERFACE:LINKER:-rpath,${installed}>")
+  cmake_path(IS_PREFIX ISOLUX_ROOT ${CMAKE_SOURCE_DIR} is_ours)
+  if(NOT is_ours)  # a part of somebody's project, whose programs know nothing of isolux_flags
+    target_link_options(isolux_${id} INTERFACE "$<BUILD_INTERFACE:LINKER:-rpath,${ISOLUX_LOADED_BUILD_DIR}>")
+  endif()
   install(TARGETS ${library} LIBRARY DESTINATION ${ISOLUX_LOADED_DIR} COMPONENT ${name})
 endfunction()
 

@@ -212,7 +212,7 @@ Table frame_rates(const SuiteContext& context) {
                        .value;
     };
     table.rows.push_back(
-        {row.name, row.local, row.texture, rate(local_shader(Vec3f(0.8f))), rate(global_shader(read, Vec3f(0.8f)))});
+        {row.name, row.local, row.texture, rate(local_shader(Vec3f(0.8f))), rate(global_shader(read, {}))});
   }
   return table;
 }

@@ -18,6 +18,8 @@ namespace {
 constexpr const char* kChosen = "auto";
 /// What --texels auto lets the texels be wrong by: a little less than one a cell is on real volumes.
 constexpr double kTexelError = 0.05;
+/// How much larger than asked an error may be without a word.
+constexpr double kNear = 1.05;
 
 struct BakeOptions {
   VolumeOptions volume;
@@ -109,6 +111,12 @@ void say_of_memory(const BakeResult& result, const Session& session) {
     session.say("the error asked is not reached: more rays than can be kept; --bounce-method paths needs no memory");
 }
 
+/// Small volumes and rough light can end above what was asked.
+void say_of_error(const BakeResult& result, double asked, const Session& session) {
+  if (asked > 0.0 && result.rmse_estimate > kNear * asked)
+    session.say(fmt::format("the error asked is not reached: about {:.4f} of {}", result.rmse_estimate, asked));
+}
+
 /// --texels auto
 void choose_size(const BakeOptions& options, const Volume& volume, const Scene& scene, BakeSettings& settings,
                  Session& session) {
@@ -133,6 +141,7 @@ void run_bake(const BakeOptions& options, Session& session) {
   const double trace_seconds = std::max(result.seconds["trace"], 1e-9);
   report_bake(result, session);
   say_of_memory(result, session);
+  say_of_error(result, options.rmse, session);
   session.report["rays_per_second"] = double(result.counters.rays) / trace_seconds;
   const bool known = !std::isnan(result.rmse_estimate);
   session.say(fmt::format(

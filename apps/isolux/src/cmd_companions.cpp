@@ -15,7 +15,10 @@ void add(CLI::App& program, Session& session, const std::string& command_name, c
   command.prefix_command();
   command.set_help_flag();
   command.callback([&command, &session, companion] {
-    session.on_run([&command, companion] { run_companion(companion, command.remaining()); });
+    session.on_run([&command, &session, companion] {
+      throw_if_stopped(session.run);
+      run_companion(companion, command.remaining());
+    });
   });
 }
 

@@ -63,9 +63,9 @@ std::vector<Rgb8> exact_colours(const IsoMesh& mesh, const Volume& volume, const
   });
   session.report["rays"] = light.counters.rays;
   session.report["rmse_estimate"] = light.rmse_estimate;
-  const Vec3f albedo = scene.albedo.at(options.isovalue);
+  const SurfaceColour surface = surface_colour(scene, options.isovalue);
   std::vector<Rgb8> colours;
-  for (const Vec3f& e : light.radiance) colours.push_back(colour(albedo * e));
+  for (const Vec3f& e : light.radiance) colours.push_back(colour(surface.shown(e)));
   return colours;
 }
 
@@ -73,10 +73,10 @@ std::vector<Rgb8> baked_colours(const IsoMesh& mesh, const Volume& volume, const
                                 const ExtractOptions& options, const Run& run) {
   const float isovalue = options.isovalue;
   const LightReader reader(volume, options.light.of_side(light, options.side.or_outer()), TexelStorage::kBricks, run);
-  const Vec3f albedo = light_albedo(light, isovalue);
+  const SurfaceColour surface = surface_colour(light, isovalue);
   std::vector<Rgb8> colours;
   for (const Vec3f& p : positions(mesh)) {
-    colours.push_back(colour(albedo * reader.at_index(volume.lattice().frame.index(Vec3(p)), double(isovalue))));
+    colours.push_back(colour(surface.shown(reader.at_index(volume.lattice().frame.index(Vec3(p)), double(isovalue)))));
   }
   return colours;
 }

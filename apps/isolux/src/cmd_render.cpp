@@ -56,13 +56,13 @@ Shader baked_shader(const Volume& volume, const LightFile& light, const RenderOp
     const double isovalue = double(options.isovalue);
     return [reader, isovalue](const SurfacePoint& point) { return reader->at_index(point.index, isovalue); };
   };
-  const Vec3f albedo = light_albedo(light, options.isovalue);
+  const SurfaceColour colour = surface_colour(light, options.isovalue);
   if (!light.inner && options.side.or_outer() == LevelSetSide::kOuter)
-    return global_shader(reading(LevelSetSide::kOuter), albedo);
+    return global_shader(reading(LevelSetSide::kOuter), colour);
   LightAt first = reading(LevelSetSide::kOuter);
   LightAt second = reading(LevelSetSide::kInner);
   if (outer != light_outer(light)) std::swap(first, second);
-  return global_shader(std::move(first), std::move(second), albedo);
+  return global_shader(std::move(first), std::move(second), colour);
 }
 
 /// At the middle of the box from outside, or out of --eye.
@@ -107,7 +107,7 @@ void run_render(const RenderOptions& options, Session& session) {
   if (options.light.given()) light = options.light.read(volume, session);
   warn_outside_range(volume, options.isovalue, session);
 
-  const Vec3f albedo = light ? light_albedo(*light, options.isovalue) : Vec3f(0.8f);
+  const Vec3f albedo = light ? surface_colour(*light, options.isovalue).albedo : SurfaceColour{}.albedo;
   RenderSettings settings{
       .width = width, .height = height, .supersampling = options.samples, .isovalue = options.isovalue};
   settings.outer = light ? light_outer(*light) : OuterSide::kLower;

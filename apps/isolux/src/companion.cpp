@@ -6,7 +6,6 @@
 
 #include <array>
 #include <cerrno>
-#include <csignal>
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
@@ -35,10 +34,7 @@ void run_companion(const std::string& name, const std::vector<std::string>& argu
   std::vector<char*> argv;
   for (auto& argument : copy) argv.push_back(argument.data());
   argv.push_back(nullptr);
-  // main() blocks signals for its own watcher; the new program starts with none blocked.
-  sigset_t none;
-  sigemptyset(&none);
-  pthread_sigmask(SIG_SETMASK, &none, nullptr);
+  // Interrupts stay blocked, so that none is lost before the companion watches for them as this program has.
   execv(path.c_str(), argv.data());
   throw IoError(fmt::format("{}: cannot start: {}", path, std::strerror(errno)));
 }

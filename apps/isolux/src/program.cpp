@@ -8,7 +8,6 @@
 #include <new>
 #include <stdexcept>
 
-#include "memory.h"
 #include "session.h"
 #include "signals.h"
 #include "terminal.h"
@@ -17,7 +16,6 @@
 namespace isolux {
 
 int run_program(std::string what, const std::function<int(Session& session, std::string& what)>& work) {
-  return_large_arrays();
   open_standard_streams();
   std::signal(SIGXFSZ, SIG_IGN);
   const SignalWatcher signals;

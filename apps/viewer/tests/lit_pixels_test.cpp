@@ -183,7 +183,7 @@ TEST_P(LitPixels, AgreeWithTheLookUpOnTheProcessor) {
   SurfaceView view;
   view.camera = orbit_camera(lattice, 30.0, 20.0, 1.0);
   view.lighting = Lighting::kGlobal;
-  view.albedo = {0.9f, 0.8f, 0.6f};
+  view.colour = {.albedo = {0.9f, 0.8f, 0.6f}, .emission = {0.0f, 0.05f, 0.1f}};
   view.exposure = 1.1f;
   Target target;
   renderer.draw(view);
@@ -200,7 +200,7 @@ TEST_P(LitPixels, AgreeWithTheLookUpOnTheProcessor) {
                             2.0 * double(target.depths[at]) - 1.0, 1.0);
       const glm::dvec4 centred = from_clip * clip;
       const Vec3 world = centre + Vec3(centred) / centred.w;
-      const Vec3f shown = view.exposure * view.albedo * expected.at(world);
+      const Vec3f shown = view.exposure * view.colour.shown(expected.at(world));
       for (int c = 0; c < 3; ++c) {
         // One code for the texture's float16 and 8-bit filter weights, one for rounding.
         ASSERT_LE(std::abs(int(target.colours[at][std::size_t(c)]) - int(srgb_code(shown[c]))), 2)

@@ -33,7 +33,7 @@ TEST(SurfaceRenderer, FindsTheBricksOfPixelsAtTheEdgesOfTriangles) {
   view.camera = orbit_camera(volume->lattice(), 30.0, 20.0, 1.0);
   view.camera.half_height *= 8.0;  // far away: a pixel is some bricks wide
   view.lighting = Lighting::kGlobal;
-  view.albedo = Vec3f(1.0f);
+  view.colour.albedo = Vec3f(1.0f);
   Target many(4);
   glClearColor(1.0f, 1.0f, 1.0f, 0.0f);
   glClear(GL_COLOR_BUFFER_BIT);

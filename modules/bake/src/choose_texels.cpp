@@ -9,7 +9,6 @@
 #include <cmath>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
-#include <glm/matrix.hpp>
 #include <limits>
 
 #include "resampling_choice.h"
@@ -20,8 +19,7 @@ namespace {
 constexpr std::array<double, 6> kRatios = {0.25, 0.5, 0.75, 1.0, 1.5, 2.0};
 constexpr std::size_t kPoints = 1000;  // the rms of an error is known to some 5 percent
 constexpr int kPointRays = 256;
-constexpr double kRidge = 1e-6;  // of the moments' diagonal: openness at several steps may be all alike
-constexpr int kTexelRays = 64;   // whatever the bake will spend: exact texels are asked about
+constexpr int kTexelRays = 64;  // whatever the bake will spend: exact texels are asked about
 
 /// Random points of random level sets, the light there, and how much area of how many level sets each stands for.
 struct Reference {
@@ -125,15 +123,14 @@ class Judge {
   Judge(const Reference& reference, const Readings& read, const std::vector<Vec3f>& openness)
       : reference_(reference), read_(read), openness_(openness), channels_(std::size_t(reference.samples.channels)) {}
 
-  /// rms of reading less truth, the variance of both taken out.
-  [[nodiscard]] double error() const {
+  /// rms of reading less truth, the variance of both taken out; infinite where there is nothing to read. With
+  /// near-field terms, of a grid of so many texels, where they help.
+  [[nodiscard]] double error(std::size_t texels) const {
     const double plain = error_with([](std::size_t /*point*/, std::size_t /*channel*/) { return Vec3(0.0); });
     if (openness_.empty()) return plain;
     // What a half of the points says of the weights is tried on the other half.
     std::array<std::vector<Vec3>, 2> weights;
-    for (std::size_t half = 0; half < 2; ++half) {
-      for (std::size_t c = 0; c < channels_; ++c) weights[half].push_back(near_field_weights(1 - half, c));
-    }
+    for (std::size_t half = 0; half < 2; ++half) weights[half] = near_field_weights(1 - half, 3.0 * double(texels));
     return std::min(plain, error_with([&](std::size_t p, std::size_t c) { return weights[p % 2][c]; }));
   }
 
@@ -146,20 +143,26 @@ class Judge {
     return openness_.empty() ? Vec3(0.0) : Vec3(openness_[point]) - read_.openness[point];
   }
 
-  /// Those by which openness best foretells what reading misses, as estimate_near_field() finds them between texels:
-  /// steep places count by their steepness's root.
-  [[nodiscard]] Vec3 near_field_weights(std::size_t half, std::size_t channel) const {
-    Mat3 squares(0.0);
-    Vec3 products(0.0);
+  /// Those with which openness foretells what reading misses, by channel; kept or not as those of a bake's are, which
+  /// come of `rows` differences between texels. Steep places count by their steepness's root there, too.
+  [[nodiscard]] std::vector<Vec3> near_field_weights(std::size_t half, double rows) const {
+    NearFieldFit fit;
+    Vec3 squares(0.0);
     for (std::size_t p = half; p < reference_.samples.size(); p += 2) {
       if (!(read_.lit[p] > 0.0)) continue;
-      const Vec3 more = openness_beyond(p);
-      const double weight = std::sqrt(reference_.weights[p]);
-      squares += weight * glm::outerProduct(more, more);
-      products += weight * truth_beyond(p, channel) * more;
+      Vec3 missed(0.0);
+      for (std::size_t c = 0; c < channels_; ++c) {
+        missed[int(c)] = truth_beyond(p, c);
+        squares[int(c)] += std::pow(double(reference_.samples.radiance[p * channels_ + c]), 2.0);
+      }
+      fit.add(openness_beyond(p), missed, int(channels_), std::sqrt(reference_.weights[p]));
     }
-    for (int t = 0; t < 3; ++t) squares[t][t] *= 1.0 + kRidge;
-    return glm::determinant(squares) > 0.0 ? glm::inverse(squares) * products : Vec3(0.0);
+    std::vector<Vec3> weights;
+    for (std::size_t c = 0; c < channels_; ++c) {
+      const double light = std::sqrt(squares[int(c)] / std::max(fit.rows(), 1.0));
+      weights.push_back(fit.weights(int(c), light, rows).value_or(Vec3(0.0)));
+    }
+    return weights;
   }
 
   template <class Weights>
@@ -177,7 +180,7 @@ class Judge {
       squares += reference_.weights[p] * (square - noise);
       total += reference_.weights[p];
     }
-    return total > 0.0 ? std::sqrt(std::max(0.0, squares / total)) : 0.0;
+    return total > 0.0 ? std::sqrt(std::max(0.0, squares / total)) : std::numeric_limits<double>::infinity();
   }
 
   const Reference& reference_;
@@ -238,7 +241,7 @@ TexelChoice choose_texels(const Volume& volume, const Scene& scene, const BakeSe
     const TraceResult traced = tracer->trace(volume, scene, std::move(corners.sites), rays, other);
     best.counters.rays += traced.counters.rays;
     const Readings read = read_between(corners, traced.samples, before_corners, reference.samples.size());
-    const double error = Judge(reference, read, openness).error();
+    const double error = Judge(reference, read, openness).error(texels.count());
     if (error < best.error) {
       best.texels = texels.size;
       best.error = error;

@@ -68,7 +68,8 @@ HeldOut::SquaredError HeldOut::squared_error(std::span<const float> light) const
   const double mean = sum / count;
   // The channels of a texel are taken for one another's copies.
   const double variance = std::max(0.0, squares / count - mean * mean) / double(texels_.size());
-  return {.mean = std::max(0.0, mean), .standard_error = std::sqrt(variance)};
+  const double standard_error = std::sqrt(variance);
+  return {.mean = std::max(standard_error, mean), .standard_error = standard_error};
 }
 
 }  // namespace isolux

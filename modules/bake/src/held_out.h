@@ -22,7 +22,7 @@ class HeldOut {
           const TraceSettings& settings, const Run& run);
 
   struct SquaredError {
-    double mean = 0.0;
+    double mean = 0.0;            ///< at least the standard error: few texels can agree by chance
     double standard_error = 0.0;  ///< of the mean, as the texels are few and their light is noisy
   };
   /// Of light at all texels, the scene's channels each.

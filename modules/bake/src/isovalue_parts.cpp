@@ -12,8 +12,8 @@ namespace isolux {
 namespace {
 
 constexpr std::size_t kLooks = 32768;
-/// A part's sites for a voxel, of which they take .7 byte while they are lit, and the fewest that are worth a part: it
-/// takes passes over the volume.
+/// Voxels for each of a part's sites, which take .7 byte a voxel while they are lit; and the fewest sites that are
+/// worth a part, as each takes passes over the volume.
 constexpr std::size_t kVoxelsASite = 64;
 constexpr std::size_t kFewestSites = std::size_t(1) << 16;
 constexpr std::size_t kMostParts = 64;
@@ -38,11 +38,12 @@ std::vector<ValueRange> isovalue_parts(const Volume& volume, const SiteRequest& 
   constexpr float kAll = std::numeric_limits<float>::infinity();
   const ValueRange all = request.isovalues.value_or(ValueRange{.low = -kAll, .high = kAll});
   std::vector<ValueRange> parts{all};
+  const std::size_t a_part = std::max(volume.lattice().count() / kVoxelsASite, kFewestSites);
+  if (count == 1 || (count == 0 && request.texels.count() < a_part)) return parts;
   const std::vector<float> values = some_isovalues(volume, request, run);
   if (count == 0) {
     const double sites = double(request.texels.count()) * double(values.size()) / double(kLooks);
-    const auto a_part = double(std::max(volume.lattice().count() / kVoxelsASite, kFewestSites));
-    count = std::clamp<std::size_t>(std::size_t(std::lround(sites / a_part)), 1, kMostParts);
+    count = std::clamp<std::size_t>(std::size_t(std::lround(sites / double(a_part))), 1, kMostParts);
   }
   // A part ends where the sites of the next isovalue would make it larger than its share: many have the same one in
   // volumes of whole numbers, and those cannot be parted. No part is less than half a share: nets of rays are spread

@@ -123,8 +123,12 @@ std::optional<Scene> light_scene(const LightFile& light) {
   return parse_scene(it->second, "", "isolux.scene of the light");
 }
 
-Vec3f light_albedo(const LightFile& light, float isovalue) {
-  return scene_of(light).value_or(Scene{}).albedo.at(isovalue);
+SurfaceColour surface_colour(const Scene& scene, float isovalue) {
+  return {.albedo = scene.albedo.at(isovalue), .emission = scene.emission.at(isovalue)};
+}
+
+SurfaceColour surface_colour(const LightFile& light, float isovalue) {
+  return surface_colour(scene_of(light).value_or(Scene{}), isovalue);
 }
 
 int light_bounces(const LightFile& light) {

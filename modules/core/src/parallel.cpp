@@ -7,10 +7,54 @@
 
 #include <algorithm>
 #include <atomic>
+#include <map>
+#include <memory>
 #include <mutex>
 #include <optional>
+#include <vector>
 
 namespace isolux {
+namespace {
+
+/// An arena of oneTBB for one loop, from a store of those that no loop uses: oneTBB 2021.8 keeps something of every
+/// arena that is made, so that a process that made one a loop would be slower with each.
+class Arena {
+ public:
+  explicit Arena(int threads) : threads_(threads) {
+    const std::scoped_lock lock(store().guard);
+    auto& unused = store().unused[threads];
+    if (unused.empty()) {
+      arena_ = std::make_unique<tbb::task_arena>(threads);
+    } else {
+      arena_ = std::move(unused.back());
+      unused.pop_back();
+    }
+  }
+  Arena(const Arena&) = delete;
+  Arena& operator=(const Arena&) = delete;
+  ~Arena() {
+    const std::scoped_lock lock(store().guard);
+    store().unused[threads_].push_back(std::move(arena_));
+  }
+
+  [[nodiscard]] tbb::task_arena& get() { return *arena_; }
+
+ private:
+  struct Store {
+    std::mutex guard;
+    std::map<int, std::vector<std::unique_ptr<tbb::task_arena>>> unused;  ///< by their threads
+  };
+  /// Never destroyed: loops may run while static objects go.
+  static Store& store() {
+    static auto* const one = new Store;
+    return *one;
+  }
+
+  int threads_;
+  std::unique_ptr<tbb::task_arena> arena_;
+};
+
+}  // namespace
 
 void throw_if_stopped(const Run& run) {
   if (run.stop.stop_requested()) throw Cancelled("interrupted");
@@ -55,8 +99,8 @@ void parallel_blocks(std::size_t count, std::size_t block_size, const Run& run, 
     if (threads > tbb::info::default_concurrency()) {
       more_than_cores.emplace(tbb::global_control::max_allowed_parallelism, std::size_t(threads));
     }
-    tbb::task_arena arena(threads);
-    arena.execute([&] { tbb::parallel_for(std::size_t(0), blocks, work, tbb::simple_partitioner()); });
+    Arena arena(threads);
+    arena.get().execute([&] { tbb::parallel_for(std::size_t(0), blocks, work, tbb::simple_partitioner()); });
   }
   throw_if_stopped(run);
 }

@@ -16,6 +16,10 @@ namespace isolux {
 namespace {
 
 constexpr std::size_t kSitesABlock = 8192;
+/// From this albedo on reflections hardly fade, and what an acceleration overshoots stays.
+constexpr float kNearlyWhite = 0.999f;
+/// Of its light, what a site must lose to bound that of all: whoever loses less is in a closed pocket.
+constexpr float kLeastLost = 1e-3f;
 
 /// Whether no value differs by more than a unit in the last place of the largest.
 bool differ_by_rounding(const std::vector<float>& one, const std::vector<float>& other) {
@@ -90,16 +94,36 @@ TargetLight LightLinks::Solver::before_last(const SolveSettings& settings, std::
   if (start.size() == links_.sites_.isovalues.size() * channels_)
     for (std::size_t i = 0; i < e_.size(); ++i)
       e_[i] = start[numbers_.empty() ? i : numbers_[i / channels_] * channels_ + i % channels_];
+  const std::vector<float> most = is_nearly_white() ? most_light() : std::vector<float>{};
   ends_one_of_ = std::max<std::size_t>(settings.ends_one_of, 1);
   Anderson anderson(run_);
   while (solution.sweeps < settings.most_sweeps) {
     ++solution.sweeps;
     reflect(at_targets(e_), next);
     solution.change = anderson.step(e_, next);
+    for (std::size_t i = 0; i < e_.size() && !most.empty(); ++i) e_[i] = std::clamp(e_[i], 0.0f, most[i % channels_]);
     if (run_.progress) run_.progress("bounces", double(solution.sweeps) / double(settings.most_sweeps));
     if (solution.change <= settings.tolerance) break;
   }
   return at_targets(e_);
+}
+
+bool LightLinks::Solver::is_nearly_white() const {
+  if (!reads_sites()) return false;  // else what is read between texels may lie beyond them
+  float most = 0.0f;
+  for (const auto& key : scene_.albedo.keys) most = std::max({most, key.colour.x, key.colour.y, key.colour.z});
+  return most >= kNearlyWhite;
+}
+
+std::vector<float> LightLinks::Solver::most_light() {
+  std::vector<float> of_one;
+  reflect(at_targets(std::vector<float>(straight_.size(), 1.0f)), of_one);
+  std::vector<float> most(channels_, 0.0f);
+  for (std::size_t i = 0; i < straight_.size(); ++i) {
+    const float lost = 1.0f - (of_one[i] - straight_[i]);
+    if (lost > kLeastLost) most[i % channels_] = std::max(most[i % channels_], straight_[i] / lost);
+  }
+  return most;
 }
 
 void LightLinks::Solver::reflect(const TargetLight& light, std::vector<float>& next) const {

@@ -40,6 +40,11 @@ class LightLinks::Solver {
   [[nodiscard]] const std::vector<float>& isovalues() const {
     return reads_sites() ? links_.sites_.isovalues : seen_.sites.isovalues;
   }
+  /// Whether some surface gives back nearly all light.
+  [[nodiscard]] bool is_nearly_white() const;
+  /// What no site's light exceeds, by channel: e_i is what comes straight and at most the part that hits times the most
+  /// light there is, so the most is at most the largest of straight_i / (1 - that part). One sweep. \pre reads_sites()
+  [[nodiscard]] std::vector<float> most_light();
   /// The light without reflections and what one reflection of `light` adds, into `next`, whatever it holds.
   void reflect(const TargetLight& light, std::vector<float>& next) const;
   /// As the targets show it. \pre `e` lives as long as what is returned

@@ -7,8 +7,10 @@
 #include <isolux/volume_io/read.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdlib>
 #include <iostream>
+#include <limits>
 #include <mutex>
 #include <optional>
 #include <string>
@@ -24,15 +26,30 @@ namespace {
 /// gen:NAME:N, larger in a campaign, or a file of ISOLUX_DATA.
 struct Source {
   std::string name;
-  bool is_file;
+  bool is_file = false;
+  int power = 0;       ///< of two, by which values are multiplied
+  float spike = 0.0f;  ///< in the middle, instead of what is there
 };
 
 std::vector<Source> sources() {
-  return {{"gyroid", false}, {"marschner-lobb", false}, {"noise", false}, {"bonsai", true}, {"engine", true}};
+  return {{.name = "gyroid"},
+          {.name = "marschner-lobb"},
+          {.name = "noise"},
+          {.name = "noise", .power = 118},
+          {.name = "noise", .power = -100},
+          {.name = "noise", .spike = 1e30f},
+          {.name = "bonsai", .is_file = true},
+          {.name = "engine", .is_file = true}};
 }
 
 std::optional<Volume> volume_of(const Source& source) {
-  if (!source.is_file) return read_volume("gen:" + source.name + (stress() > 1 ? ":256" : ":32"));
+  if (!source.is_file) {
+    Volume volume = read_volume("gen:" + source.name + (stress() > 1 ? ":256" : ":32"));
+    for (float& value : volume.values.values()) value = std::ldexp(value, source.power);
+    const Index3 middle = volume.lattice().size / 2;
+    if (source.spike != 0.0f) volume.values(middle.x, middle.y, middle.z) = source.spike;
+    return volume;
+  }
   const char* folder = std::getenv("ISOLUX_DATA");
   if (folder == nullptr) return std::nullopt;
   return read_volume(std::string(folder) + "/" + source.name + ".nrrd");
@@ -58,7 +75,8 @@ Sites sites_between(const Volume& volume, std::size_t count, OuterSide outer, do
 }
 
 Sites sites_anywhere(const Volume& volume, std::size_t count, OuterSide outer) {
-  return sites_between(volume, count, outer, -1e30, 1e30);
+  constexpr double kAny = std::numeric_limits<double>::infinity();
+  return sites_between(volume, count, outer, -kAny, kAny);
 }
 
 /// Sites of isovalues about as alike as in one of the 255 buckets of a bake: the `part`-th of 64 equal shares.

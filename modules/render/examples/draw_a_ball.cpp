@@ -20,7 +20,7 @@ int main(int argc, char** argv) try {
       [](const isolux::SurfacePoint& point) {  // a baked light: LightReader::at_index(point.index)
         return isolux::Vec3f(0.5f + 0.5f * float(point.normal.z));
       };
-  const isolux::Image image = render(volume, camera, settings, isolux::global_shader(sky, isolux::Vec3f(0.8f)), {});
+  const isolux::Image image = render(volume, camera, settings, isolux::global_shader(sky, {}), {});
   std::printf("the middle shows %.3f\n", double(image.at(80, 60).x));
   if (argc > 1) write_png(image, argv[1]);
 } catch (const isolux::Error& error) {

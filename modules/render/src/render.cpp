@@ -103,16 +103,15 @@ Image render(const Volume& volume, const Camera& camera, const RenderSettings& s
   return image;
 }
 
-Shader global_shader(LightAt light, const Vec3f& albedo) {
-  return [light = std::move(light), albedo](const SurfacePoint& point) {
-    if (!point.outside) return albedo * (0.1f * local_light(point));
-    return albedo * light(point);
+Shader global_shader(LightAt light, const SurfaceColour& colour) {
+  return [light = std::move(light), colour](const SurfacePoint& point) {
+    return point.outside ? colour.shown(light(point)) : colour.albedo * (0.1f * local_light(point));
   };
 }
 
-Shader global_shader(LightAt outer, LightAt inner, const Vec3f& albedo) {
-  return [outer = std::move(outer), inner = std::move(inner), albedo](const SurfacePoint& point) {
-    return albedo * (point.outside ? outer(point) : inner(point));
+Shader global_shader(LightAt outer, LightAt inner, const SurfaceColour& colour) {
+  return [outer = std::move(outer), inner = std::move(inner), colour](const SurfacePoint& point) {
+    return colour.shown(point.outside ? outer(point) : inner(point));
   };
 }
 

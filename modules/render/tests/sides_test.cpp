@@ -66,11 +66,14 @@ TEST(Render, LooksThroughTheSideThatIsNotShown) {
 
 TEST(Render, ShadesEachSideWithItsOwnLight) {
   const auto constant = [](float e) { return [e](const SurfacePoint&) { return Vec3f(e); }; };
-  const Shader both = global_shader(constant(0.5f), constant(0.25f), Vec3f(0.8f));
+  const Shader both = global_shader(constant(0.5f), constant(0.25f), {});
   SurfacePoint point;
   EXPECT_EQ(both(point), Vec3f(0.4f));
   point.outside = false;
   EXPECT_EQ(both(point), Vec3f(0.2f));
+  const Shader shining = global_shader(constant(0.5f), {.albedo = Vec3f(0.5f), .emission = Vec3f(0.0f, 0.25f, 0.5f)});
+  point.outside = true;
+  EXPECT_EQ(shining(point), Vec3f(0.25f, 0.5f, 0.75f)) << "what leaves the surface: albedo times e and emission";
 }
 
 }  // namespace

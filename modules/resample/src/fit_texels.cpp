@@ -53,7 +53,7 @@ void FitTexels::measure(const Volume& volume, const Run& run) {
   const NearField near_field(volume);
   const IndexToWorld to_volume = index_to_index(texels_, volume.lattice());
   const ValueRange range = value_range(volume);
-  const float least = std::max(1e-4f * (range.high - range.low), 1e-30f);
+  const float least = std::max(1e-4f * (range.high - range.low), 0x1p-124f);
   const Index3 points = volume.lattice().size;
   const Vec3 reach = glm::abs(to_volume.axes[0]) + glm::abs(to_volume.axes[1]) + glm::abs(to_volume.axes[2]);
   const auto nx = std::size_t(texels_.size.x);

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <utility>
@@ -38,7 +39,7 @@ struct TexelMeans::Impl {
   };
 
   Impl(const Volume& volume, const Sites& sites, const Lattice& lattice, const Run& run)
-      : texels(lattice), cells(TexelCells(volume.lattice(), lattice).size()) {
+      : texels(lattice), cells(TexelCells(volume.lattice(), lattice).size()), unit(to_unit(value_range(volume))) {
     const TexelCells places(volume.lattice(), texels);
     CellOrder order = sort_by_cells(places, sites, run);
     starts = std::move(order.starts);
@@ -46,11 +47,17 @@ struct TexelMeans::Impl {
     parallel_blocks(rows.size(), 65536, run, "", [&](const Block& block) {
       for (std::size_t r = block.begin; r < block.end; ++r) {
         const std::uint32_t site = order.sites[r];
-        rows[r] = {
-            .in_cell = places.place(sites.positions[site]).in_cell, .isovalue = sites.isovalues[site], .site = site};
+        rows[r] = {.in_cell = places.place(sites.positions[site]).in_cell,
+                   .isovalue = unit * sites.isovalues[site],
+                   .site = site};
       }
     });
     measure(volume, run);
+  }
+
+  /// A power of two times which the volume's values span some 1 to 2: squares of isovalues are taken.
+  [[nodiscard]] static float to_unit(const ValueRange& range) {
+    return range.high > range.low ? std::ldexp(1.0f, -std::ilogb(0.5f * range.high - 0.5f * range.low)) : 1.0f;
   }
 
   /// Calls visit(corners, rows) for every cell with rows: cells of one layer after another, even layers before odd
@@ -86,6 +93,7 @@ struct TexelMeans::Impl {
 
   Lattice texels;
   Index3 cells;
+  float unit;                         ///< what isovalues here are multiplied by
   std::vector<std::uint32_t> starts;  ///< of each cell's rows, and the end
   std::vector<Row> rows;
   std::vector<Spread> spreads;  ///< of every texel
@@ -128,7 +136,7 @@ void TexelMeans::Impl::measure(const Volume& volume, const Run& run) {
   const TrilinearField field(volume);
   const IndexToWorld to_volume = index_to_index(texels, volume.lattice());
   const ValueRange range = value_range(volume);
-  const float least = kLeastSpread * (range.high - range.low);
+  const float least = kLeastSpread * (unit * range.high - unit * range.low);
   const auto nx = std::size_t(texels.size.x);
   const auto ny = std::size_t(texels.size.y);
   parallel_blocks(spreads.size(), 4096, run, "", [&](const Block& block) {
@@ -138,7 +146,7 @@ void TexelMeans::Impl::measure(const Volume& volume, const Run& run) {
       const std::size_t j = t / nx % ny;
       const std::size_t k = t / (nx * ny);
       const Vec3 centre = to_volume.world({double(t % nx), double(j), double(k)});
-      spread.own = float(field.value(centre)) - spread.isovalue;
+      spread.own = unit * float(field.value(centre)) - spread.isovalue;
       // The prior's samples lie as far apart as the others, or as far off as the texel: few samples that lie close
       // together do not say what light is there.
       const float prior = kSlopePrior * (spread.per_slope / spread.weight + spread.own * spread.own);
@@ -184,7 +192,7 @@ void TexelMeans::Impl::lines(std::span<const float> sums, ResampledGrid& result,
       for (std::size_t v = t * channels; v < (t + 1) * channels; ++v) {
         const float mean = sums[2 * v] / spread.weight;
         const float slope = (sums[2 * v + 1] - spread.lever * mean) * spread.per_slope;
-        result.grid.detail.slopes[v] = slope;
+        result.grid.detail.slopes[v] = slope * unit;
         result.grid.values[v] = mean + slope * spread.own;
       }
     }

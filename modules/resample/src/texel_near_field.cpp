@@ -20,21 +20,6 @@
 namespace isolux {
 namespace {
 
-/// Half a step is one of a fit's but not one of these: at cell centres it says other things than elsewhere
-/// (docs/resampling.md). Those that openness_before() promises.
-constexpr std::array<double, 3> kSteps = {1.0, 2.0, 4.0};
-/// Of the squared differences between texels, the part that terms must explain to be kept: it makes no visible
-/// difference below.
-constexpr double kLeastPart = 0.002;
-/// Likewise, of what as many meaningless terms explain on average.
-constexpr double kLeastOfChance = 10.0;
-/// Of the light (root mean square of the texels), the most that all openness may be worth; volumes under a white sky
-/// have .05 to .4 of its 1. Near a lamp inside the volume openness hardly changes, but as light does, with the
-/// distance; weights that explain one by the other are tens of times the light.
-constexpr double kMostOfLight = 2.0;
-/// Of the moments' diagonal, added to it: openness at several steps may be all alike.
-constexpr double kRidge = 1e-6;
-
 /// A texel's openness at each step and its weight: level sets count by their area (the coarea formula), but less so
 /// than that, since a single value of a steep place says little of the others; 0 if unlit.
 struct Measured {
@@ -78,7 +63,7 @@ class MeasuredLayers {
       for (std::size_t n = 0; n < columns_.size(); ++n)
         kept.measured[row + std::size_t(columns_[n])].weight = float(std::sqrt(row_.ahead(n).fall));
       for (int s = 0; s < 3; ++s) {
-        row_.find_openness(outwards_ * kSteps[std::size_t(s)]);
+        row_.find_openness(outwards_ * kOwnSteps[std::size_t(s)]);
         for (std::size_t n = 0; n < columns_.size(); ++n)
           kept.measured[row + std::size_t(columns_[n])].openness[s] = row_.openness(n);
       }
@@ -93,21 +78,15 @@ class MeasuredLayers {
   std::array<Kept, 3> kept_;
 };
 
-/// Sums over texels, and over pairs of opposite neighbours of what a texel has more than these have on average.
+/// Sums over texels, and what is found of pairs of opposite neighbours: what a texel has more than these on average.
 struct Moments {
-  Mat3 openness{0.0};                ///< squares and products
-  std::array<Vec3, 3> by_channel{};  ///< of openness with light
-  Vec3 light{0.0};                   ///< squares, by channel
-  double rows = 0.0;
+  NearFieldFit pairs;
   Vec3 mean{0.0};     ///< openness of all texels
   Vec3 squares{0.0};  ///< of their light, by channel
   double texels = 0.0;
 
   void operator+=(const Moments& more) {
-    openness += more.openness;
-    for (std::size_t c = 0; c < 3; ++c) by_channel[c] += more.by_channel[c];
-    light += more.light;
-    rows += more.rows;
+    pairs += more.pairs;
     mean += more.mean;
     squares += more.squares;
     texels += more.texels;
@@ -124,16 +103,13 @@ void add_pair(const std::vector<float>& values, int channels, const Pair& pair, 
   const auto& [before, here, after] = pair.measured;
   if (!(before->weight > 0.0f && after->weight > 0.0f)) return;
   const Vec3 more = Vec3(here->openness) - 0.5 * (Vec3(before->openness) + Vec3(after->openness));
-  const auto weight = double(here->weight);
-  sum.openness += weight * glm::outerProduct(more, more);
   const auto n = std::size_t(channels);
+  Vec3 lighter(0.0);
   for (int c = 0; c < channels; ++c) {
     const auto e = [&](std::size_t t) { return double(values[pair.texels[t] * n + std::size_t(c)]); };
-    const double lighter = e(1) - 0.5 * (e(0) + e(2));
-    sum.by_channel[std::size_t(c)] += weight * lighter * more;
-    sum.light[c] += weight * lighter * lighter;
+    lighter[c] = e(1) - 0.5 * (e(0) + e(2));
   }
-  sum.rows += 1.0;
+  sum.pairs.add(more, lighter, channels, double(here->weight));
 }
 
 Moments moments_of_layer(const IlluminationGrid& grid, MeasuredLayers& layers, int k) {
@@ -184,24 +160,6 @@ Moments moments(const NearField& near_field, double outwards, const ResampledGri
   return all;
 }
 
-/// The weights of one channel's terms; none if they explain too little, or by more than there is.
-std::optional<Vec3> weights(const Moments& sum, int channel) {
-  Vec3 scale(0.0);
-  for (int s = 0; s < 3; ++s) scale[s] = sum.openness[s][s] > 0.0 ? 1.0 / std::sqrt(sum.openness[s][s]) : 0.0;
-  Mat3 scaled(kRidge);
-  for (int s = 0; s < 3; ++s)
-    for (int t = 0; t < 3; ++t) scaled[s][t] += scale[s] * sum.openness[s][t] * scale[t];
-  const Vec3& products = sum.by_channel[std::size_t(channel)];
-  const Vec3 weight = scale * (glm::inverse(scaled) * (scale * products));
-  const double explained = 2.0 * glm::dot(weight, products) - glm::dot(weight, sum.openness * weight);
-  const double least = std::max(kLeastPart, kLeastOfChance * double(kSteps.size()) / std::max(sum.rows, 1.0));
-  if (!(explained > least * sum.light[channel])) return {};
-  const double light = std::sqrt(sum.squares[channel] / std::max(sum.texels, 1.0));
-  const Vec3 worth = glm::abs(weight);
-  if (worth.x + worth.y + worth.z > kMostOfLight * light) return {};
-  return weight;
-}
-
 }  // namespace
 
 void estimate_near_field(const Volume& volume, double outwards, ResampledGrid& texels, const Run& run) {
@@ -210,13 +168,14 @@ void estimate_near_field(const Volume& volume, double outwards, ResampledGrid& t
   const Moments sum = moments(near_field, outwards, texels, run);
   std::vector<NearFieldTerm> terms;
   for (int s = 0; s < 3; ++s) {
-    terms.push_back({.step = float(outwards * kSteps[std::size_t(s)]),
+    terms.push_back({.step = float(outwards * kOwnSteps[std::size_t(s)]),
                      .mean = float(sum.mean[s] / std::max(sum.texels, 1.0)),
                      .weight = Vec3f(0.0f)});
   }
   bool any = false;
   for (int c = 0; c < grid.channels; ++c) {
-    const std::optional<Vec3> weight = weights(sum, c);
+    const double light = std::sqrt(sum.squares[c] / std::max(sum.texels, 1.0));
+    const std::optional<Vec3> weight = sum.pairs.weights(c, light, sum.pairs.rows());
     if (!weight) continue;
     any = true;
     for (int s = 0; s < 3; ++s) {
@@ -264,19 +223,6 @@ void take_off_near_field(const Volume& volume, IlluminationGrid& light, const Ru
     }
   });
   light.detail.texel_light = TexelLight::kReduced;
-}
-
-std::vector<Vec3f> openness_before(const Volume& volume, const Sites& sites) {
-  const NearField near_field(volume);
-  const double outwards = near_field.outwards(sites);
-  std::vector<Vec3f> openness(sites.size());
-  for (std::size_t s = 0; s < sites.size(); ++s) {
-    const Vec3 index(sites.positions[s]);
-    const NearField::Ahead ahead = near_field.ahead(index);
-    for (std::size_t t = 0; t < kSteps.size(); ++t)
-      openness[s][int(t)] = near_field.openness(index, ahead, double(sites.isovalues[s]), outwards * kSteps[t]);
-  }
-  return openness;
 }
 
 }  // namespace isolux

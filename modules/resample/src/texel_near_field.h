@@ -5,7 +5,13 @@
 #include <isolux/core/volume.h>
 #include <isolux/resample/resampler.h>
 
+#include <array>
+
 namespace isolux {
+
+/// Where openness_before() looks. Half a step is one of a fit's but not one of these: at cell centres it says other
+/// things than elsewhere (docs/resampling.md).
+inline constexpr std::array<double, 3> kOwnSteps = {1.0, 2.0, 4.0};
 
 /// Near-field terms for texels that keep their own light (TexelLight::kOwn): the weights with which the texels'
 /// openness best foretells how each differs from the mean of its opposite neighbours, by weighted least squares. Noise

@@ -75,11 +75,11 @@ ScalarType voxel_type(const std::string& path, const std::string& type) {
 void check_text(const std::string& path, std::uint64_t offset, std::uint64_t count, ScalarType type) {
   NumberText text(path, offset, " \n\r\t\f\v");
   for (std::uint64_t i = 0; i < count; ++i) {
-    if (text.next().empty()) throw IoError(fmt::format("{}: {} numbers of data expected, {} found", path, count, i));
-    const double value = text.number(type != ScalarType::kFloat32);
-    if (!holds(type, value))
-      throw InvalidInput(
-          fmt::format("{}: {}, value {} of the data, is no finite {}", path, value, i, scalar_type_name(type)));
+    const std::string& word = text.next();
+    if (word.empty()) throw IoError(fmt::format("{}: {} numbers of data expected, {} found", path, count, i));
+    if (!reads_as(type, word))
+      throw InvalidInput(fmt::format("{}: '{}', value {} of the data, is no finite {}", path, word.substr(0, 40), i,
+                                     scalar_type_name(type)));
   }
 }
 

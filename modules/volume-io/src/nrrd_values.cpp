@@ -62,7 +62,7 @@ std::vector<float> read_text(const NrrdHeader& header, std::uint64_t offset, std
   NumberText text(header.data_file, offset + std::uint64_t(header.byte_skip), " \n\r\t,\f\v");
   std::vector<float> values;
   values.reserve(count);
-  for (std::string word = text.next(); !word.empty(); word = text.next()) {
+  while (!text.next().empty()) {
     const double value = text.number();
     if (values.size() == count)
       throw IoError(fmt::format("{}: {} numbers expected, more found", header.data_file, count));

@@ -12,6 +12,16 @@ namespace {
 constexpr std::size_t kLongestNumber = 400;
 }  // namespace
 
+std::optional<double> parse_real(std::string_view text) {
+  if (text.starts_with('+') && !text.starts_with("+-")) text.remove_prefix(1);
+  double value = 0.0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (end != text.data() + text.size() || text.empty()) return std::nullopt;
+  if (error == std::errc()) return value;
+  const bool is_small = text.find("e-") != std::string_view::npos || text.find("E-") != std::string_view::npos;
+  return error == std::errc::result_out_of_range && is_small ? std::optional(0.0) : std::nullopt;
+}
+
 NumberText::NumberText(const std::string& path, std::uint64_t offset, std::string_view separators)
     : path_(path), file_(path, std::ios::binary), separators_(separators) {
   file_.seekg(std::streamoff(offset));
@@ -29,16 +39,12 @@ const std::string& NumberText::next() {
   return word_;
 }
 
-double NumberText::number(bool doubles) const {
-  double value = 0.0;
-  const auto [end, error] = std::from_chars(word_.data(), word_.data() + word_.size(), value);
-  if (error == std::errc::invalid_argument || end != word_.data() + word_.size())
-    throw IoError(
-        fmt::format("{}: '{}', value {} of the data, is not a number", path_, word_.substr(0, 40), words_ - 1));
-  if (error != std::errc() || (!doubles && !fits_float(value)))
-    throw IoError(fmt::format("{}: '{}', value {} of the data, is beyond what {} holds", path_, word_.substr(0, 40),
-                              words_ - 1, doubles ? "double" : "float32"));
-  return value;
+double NumberText::number() const {
+  const auto value = parse_real(word_);
+  if (!value || !fits_float(*value))
+    throw InvalidInput(fmt::format("{}: '{}', value {} of the data, is {}", path_, word_.substr(0, 40), words_ - 1,
+                                   value ? "beyond what float32 holds" : "not a number"));
+  return *value;
 }
 
 }  // namespace isolux::detail

@@ -2,20 +2,25 @@
 
 #include <cstdint>
 #include <fstream>
+#include <optional>
 #include <string>
 #include <string_view>
 
 namespace isolux::detail {
 
-/// Numbers as text in a file, with `separators` between them.
+/// The whole text as a number, NaN and infinities among them; what is too small for double is 0. Nothing if it is none,
+/// or too large.
+[[nodiscard]] std::optional<double> parse_real(std::string_view text);
+
+/// Words of a file with `separators` between them, which outlive this.
 class NumberText {
  public:
   NumberText(const std::string& path, std::uint64_t offset, std::string_view separators);
-  /// The next word; empty at the end. \throw IoError if it is no text
+  /// The next word; empty at the end. \throw IoError for one that is far too long for a number
   const std::string& next();
-  /// The last word as a number that float or, with `doubles`, double holds (NaN and infinities are). \throw IoError
-  /// naming the file, the word and its number among them, counted from 0
-  [[nodiscard]] double number(bool doubles = false) const;
+  /// The last word as a number that float holds, NaN and infinities among them. \throw InvalidInput naming the file,
+  /// the word and its place among them, counted from 0
+  [[nodiscard]] double number() const;
 
  private:
   std::string path_;

@@ -5,12 +5,12 @@
 
 namespace isolux::detail {
 
-/// Takes what a child sends. \throw IoError naming `path` if fewer bytes come than are needed; InvalidInput if the size
-/// is not `expected`
 struct ReceivedVolume {
   SentVolume header;
   AnyValues values;
 };
+/// Takes what a child sends. \throw IoError naming `path` if fewer bytes come than are needed; InvalidInput if the size
+/// is not `expected`
 [[nodiscard]] ReceivedVolume receive_volume(ByteSource& received, const std::string& path, Index3 expected,
                                             VoxelForm form, const Run& run);
 

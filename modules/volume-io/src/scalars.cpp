@@ -1,11 +1,14 @@
 #include "scalars.h"
 
+#include "number_text.h"
+
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <isolux/core/error.h>
 
 #include <algorithm>
 #include <bit>
+#include <charconv>
 #include <cmath>
 #include <cstring>
 #include <limits>
@@ -134,12 +137,18 @@ std::uint64_t checked_count(const std::string& path, std::span<const std::int64_
 
 bool fits_float(double value) { return std::isfinite(float(value)) || !std::isfinite(value); }
 
-bool holds(ScalarType type, double value) {
+bool reads_as(ScalarType type, std::string_view text) {
+  if (text.starts_with('+') && !text.starts_with("+-")) text.remove_prefix(1);
   return with_type(type, [&](auto zero) {
     using T = decltype(zero);
-    const bool in_range =
-        value >= double(std::numeric_limits<T>::lowest()) && value <= double(std::numeric_limits<T>::max());
-    return in_range && (std::is_floating_point_v<T> || std::floor(value) == value);
+    if constexpr (std::is_integral_v<T>) {
+      T value{};
+      const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+      return error == std::errc() && end == text.data() + text.size();
+    } else {
+      const auto value = parse_real(text);
+      return value && std::isfinite(T(*value));
+    }
   });
 }
 

@@ -10,6 +10,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <variant>
 #include <vector>
 
@@ -33,8 +34,9 @@ using AnyValues = std::variant<std::vector<float>, std::vector<std::uint8_t>, st
 /// Whether a number has a nearest float: infinities and NaN have one, finite numbers beyond the largest have not.
 [[nodiscard]] bool fits_float(double value);
 
-/// Whether a number is finite and one of `type`: whole and within its range, or no larger than its largest.
-[[nodiscard]] bool holds(ScalarType type, double value);
+/// Whether the whole text is one finite number of `type`, as C++ and C write it: whole numbers without a point or an
+/// exponent.
+[[nodiscard]] bool reads_as(ScalarType type, std::string_view text);
 
 /// Reads `count` numbers, in `form`. \throw InvalidInput for a number that does not fit a float; IoError naming `path`
 /// and the bytes expected and found if there are fewer; Cancelled. Memory follows what was read, not what was promised.

@@ -77,7 +77,7 @@ void Viewer::draw_surface(const WindowSize& size) {
   SurfaceView view;
   view.camera = trackball_->camera();
   view.style = style_;
-  view.albedo = albedo_of(document_, float(slider_->value()));
+  view.colour = surface_colour_of(document_, float(slider_->value()));
   for (const Pane& pane : make_panes(layout_, size.width, size.height)) {
     glViewport(int(pane.box.x), 0, std::max(int(pane.box.width), 1), size.height);
     view.lighting = lit_here() ? pane.lighting : Lighting::kLocal;

@@ -151,7 +151,8 @@ void SurfaceRenderer::use(const ShaderProgram& program, const SurfaceView& view)
   use(program);
   glUniformMatrix4fv(program.uniform("clip_from_centred"), 1, GL_FALSE, glm::value_ptr(clip));
   glUniform3fv(program.uniform("eye"), 1, glm::value_ptr(eye));
-  glUniform3fv(program.uniform("albedo"), 1, glm::value_ptr(view.albedo));
+  glUniform3fv(program.uniform("albedo"), 1, glm::value_ptr(view.colour.albedo));
+  glUniform3fv(program.uniform("emission"), 1, glm::value_ptr(view.colour.emission));
   glUniform1f(program.uniform("exposure"), view.exposure);
   glUniform3fv(program.uniform("line_colour"), 1, glm::value_ptr(kLineColour));
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <isolux/core/surface_colour.h>
 #include <isolux/mc_extract/indexed_mesh.h>
 #include <isolux/render/camera.h>
 
@@ -21,7 +22,7 @@ struct SurfaceView {
   Camera camera;
   Lighting lighting = Lighting::kLocal;
   SurfaceStyle style = SurfaceStyle::kShaded;
-  Vec3f albedo{0.8f};
+  SurfaceColour colour;
   float exposure = 1.0f;  ///< factor before the sRGB curve
   double aspect = 1.0;    ///< width over height of OpenGL's viewport
 };

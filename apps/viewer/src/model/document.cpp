@@ -22,8 +22,8 @@ Document make_document(StoredVolume volume) {
   return document;
 }
 
-Vec3f albedo_of(const Document& document, float isovalue) {
-  return document.light ? light_albedo(*document.light, isovalue) : Scene{}.albedo.at(isovalue);
+SurfaceColour surface_colour_of(const Document& document, float isovalue) {
+  return document.light ? surface_colour(*document.light, isovalue) : surface_colour(Scene{}, isovalue);
 }
 
 Index3 draft_texels(Index3 volume_size, double most) {
@@ -56,13 +56,13 @@ void export_surface(const Document& document, const Stages& stages, const Backen
       stages.extractors.create(extractor.name, extractor.settings)->extract(document.volume->stored(), settings, run);
   std::vector<Rgb8> colours;
   if (document.light) {
-    const Vec3f albedo = albedo_of(document, settings.isovalue);
+    const SurfaceColour surface = surface_colour_of(document, settings.isovalue);
     const LightReader reader(document.volume->floats(), document.light->grid, TexelStorage::kDense, run);
     const IndexToWorld& frame = document.volume->lattice().frame;
     colours.reserve(mesh.n_vertices());
     for (const auto v : mesh.vertices()) {
       const auto& p = mesh.point(v);
-      const Vec3f shown = albedo * reader.at_index(frame.index({p[0], p[1], p[2]}), double(settings.isovalue));
+      const Vec3f shown = surface.shown(reader.at_index(frame.index({p[0], p[1], p[2]}), double(settings.isovalue)));
       colours.push_back({srgb_code(shown.x), srgb_code(shown.y), srgb_code(shown.z)});
     }
   }

@@ -2,6 +2,7 @@
 
 #include <isolux/bake/bake.h>
 #include <isolux/bake/light_points.h>
+#include <isolux/core/surface_colour.h>
 #include <isolux/volume_io/light_file.h>
 
 #include <memory>
@@ -23,8 +24,8 @@ struct Document {
 /// \pre require_usable(volume)
 [[nodiscard]] Document make_document(StoredVolume volume);
 
-/// The albedo that the light's scene gives this isovalue; 0.8 without a light.
-[[nodiscard]] Vec3f albedo_of(const Document& document, float isovalue);
+/// Of this isovalue's surface, as the light's scene has it; without a light that of the scene by default.
+[[nodiscard]] SurfaceColour surface_colour_of(const Document& document, float isovalue);
 
 /// A light that is soon there: few rays, and at most 300,000 texels. \throw as bake()
 [[nodiscard]] LightFile bake_draft(const Volume& volume, const Scene& scene, const Stages& stages, const Run& run);

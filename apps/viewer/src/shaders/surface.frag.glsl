@@ -7,6 +7,7 @@ centroid in vec3 at_vertices;  // exact light, or what is added at the vertices
 
 uniform vec3 eye;       // relative to the centre
 uniform vec3 albedo;
+uniform vec3 emission;
 uniform float exposure;
 uniform float isovalue;
 uniform vec3 line_colour;
@@ -36,9 +37,9 @@ void main() {
   if (!global_light) {
     radiance = albedo * local_light(gl_FrontFacing ? n : -n);
   } else if (gl_FrontFacing) {
-    radiance = albedo * (exact_light ? at_vertices : read_light(place, isovalue, at_vertices));
+    radiance = albedo * (exact_light ? at_vertices : read_light(place, isovalue, at_vertices)) + emission;
   } else if (inner_light) {
-    radiance = albedo * read_light(place, isovalue, at_vertices);
+    radiance = albedo * read_light(place, isovalue, at_vertices) + emission;
   } else {
     radiance = albedo * 0.1 * local_light(-n);  // the inner side has no light of its own
   }

@@ -84,12 +84,24 @@ HWY_INLINE Floats value(const Corners& c, const Floats (&at)[3]) {
   return lerp(z[0], z[1], at[2]);
 }
 
-/// How far the kernels may be wrong about the field in a cell that a ray leaves at t: a rounding or two of its values,
-/// of the isovalue, and of the ray's place times the field's slope.
-HWY_INLINE Floats rounding(const Corners& k, Floats isovalue, Floats t) {
-  Floats largest = hn::Abs(k.v[0]);
-  for (int q = 1; q < 8; ++q) largest = hn::Max(largest, hn::Abs(k.v[q]));
-  return hn::Mul(hn::Set(kF, 0x1p-23f), hn::MulAdd(t, largest, hn::Max(largest, hn::Abs(isovalue))));
+HWY_INLINE Floats largest(const Corners& k) {
+  Floats most = hn::Abs(k.v[0]);
+  for (int q = 1; q < 8; ++q) most = hn::Max(most, hn::Abs(k.v[q]));
+  return most;
+}
+
+/// A power of two that makes numbers up to `largest` numbers below 2, so that their squares neither overflow nor vanish
+/// whatever the unit of the volume. No bit is lost.
+HWY_INLINE Floats to_unit(Floats largest) {
+  const Ints exponent = hn::And(hn::BitCast(kI, largest), hn::Set(kI, 0x7F800000));
+  return hn::BitCast(kF, hn::Max(hn::Sub(hn::Set(kI, 0x7F000000), exponent), hn::Set(kI, 0x00800000)));
+}
+
+/// How far the kernels may be wrong about the field in a cell of values up to `largest` that a ray leaves at t: a
+/// rounding or two of its values, of the isovalue, and of the ray's place times the field's slope.
+HWY_INLINE Floats rounding(Floats largest, Floats isovalue, Floats t) {
+  const Floats unit = hn::Set(kF, 0x1p-23f);
+  return hn::MulAdd(t, hn::Mul(unit, largest), hn::Mul(unit, hn::Max(largest, hn::Abs(isovalue))));
 }
 
 /// Asks for the corner values of the vector of cells at `at` ahead of their use.

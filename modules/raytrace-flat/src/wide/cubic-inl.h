@@ -15,6 +15,10 @@ namespace HWY_NAMESPACE {
 /// A cubic on [0, 1] in Bernstein form: if no coefficient reaches zero, neither does the cubic.
 struct Cubic {
   Floats b[4];
+
+  HWY_INLINE void scale(Floats by) {
+    for (Floats& coefficient : b) coefficient = hn::Mul(coefficient, by);
+  }
 };
 
 /// The field along the straight piece from `from` to `to` (places in the cell, 0 to 1): the corner values of the box

@@ -16,6 +16,10 @@ namespace HWY_NAMESPACE {
 /// is divided out exactly: the coefficients are the field's derivatives at the start, differences of corner values.
 struct Deflated {
   Floats c[3];
+
+  HWY_INLINE void scale(Floats by) {
+    for (Floats& coefficient : c) coefficient = hn::Mul(coefficient, by);
+  }
 };
 
 /// `at`: the start's place in the cell; `d`: direction, index space.

@@ -41,7 +41,7 @@ HWY_INLINE void weigh_isovalues(const CornerDraws& draws, std::size_t lane, Corn
     high = hn::Max(high, away[q]);
   }
   // Where all isovalues are equal the distances are 0; the least range is far from what overflows below.
-  const CornerFloats range = hn::Max(hn::Sub(high, low), hn::Set(f, 1e-30f));
+  const CornerFloats range = hn::Max(hn::Sub(high, low), hn::Set(f, 0x1p-124f));
   const CornerFloats scale = hn::Div(hn::Set(f, 1.0f / (2.8284271f * kIsovalueWidth)), range);
   for (int q = 0; q < 8; ++q) {
     // (1 + x^2 / 8)^-4 is near exp(-x^2 / 2), but never 0, so that some corner always has a weight.

@@ -72,10 +72,12 @@ void start(const CellReader& cells, float threshold, Prover& prover, Rays& rays,
     const Corners corners = cells.corners(cells.offset(cell), r.isovalue);
     // The ray follows the level set that its start lies on; the isovalue may name it less precisely.
     const Floats off = value(corners, place);
-    const Mask is_off = hn::Gt(hn::Abs(off), rounding(corners, r.isovalue, zero));
+    const Floats most = largest(corners);
+    const Mask is_off = hn::Gt(hn::Abs(off), rounding(most, r.isovalue, zero));
     const Floats exact = hn::Max(hn::Add(hn::Xor(r.isovalue, cells.sign), off), hn::Set(kF, threshold));
     r.isovalue = hn::IfThenElse(is_off, hn::Xor(exact, cells.sign), r.isovalue);
-    const Deflated polynomial = deflated(corners, place, direction);
+    Deflated polynomial = deflated(corners, place, direction);
+    polynomial.scale(to_unit(most));
     const Ints planes[3] = {hn::Add(r.cell[0], one), hn::Add(r.cell[1], one), hn::Add(r.cell[2], one)};
     const Exit exit = leave(r, planes);
     const Mask goes_on = in_box(exit.cell, r.mirror, cells.last_cell);
@@ -85,7 +87,7 @@ void start(const CellReader& cells, float threshold, Prover& prover, Rays& rays,
     const Mask blocked = hn::And(inside, goes_inwards(polynomial));
     const Mask again = next_root(polynomial, hn::IfThenElse(goes_on, exit.t, end_of_box), root);
     const Mask hit = hn::AndNot(blocked, hn::And(inside, again));
-    const Floats noise = rounding(corners, r.isovalue, exit.t);
+    const Floats noise = hn::Mul(rounding(most, r.isovalue, exit.t), to_unit(most));
     Mask doubtful = hn::And(inside, is_doubtful(polynomial, exit.t, noise));
     if (question == Question::kFirstHit) {
       const Mask is_sharp = hn::Le(noise, hn::Mul(hn::Set(kF, kAccuracy), slope_at_root(polynomial, root)));

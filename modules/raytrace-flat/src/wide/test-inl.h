@@ -72,11 +72,13 @@ void test(const CellReader& cells, RayQueue& waiting, RayQueue& travelling, Root
     Floats to[3];
     places_in_cell(r, exit, from, to);
     const Corners corners = cells.corners(cells.offset(cell), r.isovalue);
-    const Cubic cubic = along(corners, from, to);
+    const Floats most = largest(corners);
+    Cubic cubic = along(corners, from, to);
+    cubic.scale(to_unit(most));
     // Reached already at the entry: the root lies on the face, on the last cell's side by rounding.
     const Mask at_entry = hn::And(present, hn::Ge(cubic.b[0], zero));
     Floats high;
-    const Floats noise = rounding(corners, r.isovalue, exit.t);
+    const Floats noise = hn::Mul(rounding(most, r.isovalue, exit.t), to_unit(most));
     Mask doubtful;
     Mask hit = hn::Or(at_entry, hn::And(present, reaches_zero(cubic, noise, high, doubtful)));
     doubtful = hn::And(present, hn::Or(doubtful, at_entry));

@@ -11,6 +11,7 @@
 #include <isolux/core/error.h>
 #include <isolux/volume_io/volume_reader.h>
 
+#include <algorithm>
 #include <array>
 #include <chrono>
 #include <cmath>
@@ -62,31 +63,35 @@ Plan folder_plan(const std::string& source, const ReadOptions& options) {
   return tiff_plan(source, pages, options);
 }
 
-/// By content, then by extension.
-ItkFormat format_of(const std::string& source) {
-  struct Known {
-    ItkFormat format;
-    bool (*is)(const std::string&);
-    std::string_view extension;
-  };
-  static constexpr std::array<Known, 7> kKnown = {{{ItkFormat::kDicom, detail::is_dicom, ".dcm"},
-                                                   {ItkFormat::kTiff, detail::is_tiff, ".tif"},
-                                                   {ItkFormat::kTiff, detail::is_tiff, ".tiff"},
-                                                   {ItkFormat::kLegacyVtk, detail::is_legacy_vtk, ".vtk"},
-                                                   {ItkFormat::kMetaImage, detail::is_meta_image, ".mha"},
-                                                   {ItkFormat::kMetaImage, detail::is_meta_image, ".mhd"},
-                                                   {ItkFormat::kNifti, detail::is_nifti, ".nii"}}};
+struct Known {
+  ItkFormat format;
+  bool (*is)(const std::string&);
+  std::array<std::string_view, 2> extensions;
+};
+constexpr std::array<Known, 5> kKnown = {{{ItkFormat::kDicom, detail::is_dicom, {".dcm", ".dcm"}},
+                                          {ItkFormat::kTiff, detail::is_tiff, {".tif", ".tiff"}},
+                                          {ItkFormat::kLegacyVtk, detail::is_legacy_vtk, {".vtk", ".vtk"}},
+                                          {ItkFormat::kMetaImage, detail::is_meta_image, {".mha", ".mhd"}},
+                                          {ItkFormat::kNifti, detail::is_nifti, {".nii", ".nii.gz"}}}};
+
+const Known* known_by_content(const std::string& source) {
+  const auto* const found = std::find_if(kKnown.begin(), kKnown.end(), [&](const Known& k) { return k.is(source); });
+  return found == kKnown.end() ? nullptr : found;
+}
+
+const Known* known_by_name(const std::string& source) {
   for (const Known& known : kKnown)
-    if (known.is(source)) return known.format;
-  for (const Known& known : kKnown)
-    if (detail::has_extension(source, known.extension)) return known.format;
-  return ItkFormat::kNifti;
+    for (const std::string_view extension : known.extensions)
+      if (detail::has_extension(source, extension)) return &known;
+  return nullptr;
 }
 
 Plan plan(const std::string& source, const ReadOptions& options) {
   if (detail::is_directory(source)) return folder_plan(source, options);
   (void)detail::require_file(source);
-  const ItkFormat format = format_of(source);
+  const Known* known = known_by_content(source);
+  if (known == nullptr) known = known_by_name(source);
+  const ItkFormat format = known == nullptr ? ItkFormat::kNifti : known->format;
   const auto one_file = [&](Index3 size, std::string_view space) {
     return Plan{{.format = format, .source = source, .files = {source}, .size = size, .gap = {}}, space};
   };
@@ -134,13 +139,8 @@ class ItkReader final : public VolumeReader {
                          !detail::files_in_folder(source, detail::is_tiff).empty();
       return known ? 2 : 1;
     }
-    if (detail::is_dicom(source) || detail::is_tiff(source) || detail::is_legacy_vtk(source) ||
-        detail::is_meta_image(source) || detail::is_nifti(source))
-      return 2;
-    for (const auto* extension : {".nii", ".nii.gz", ".mha", ".mhd", ".vtk", ".tif", ".tiff", ".dcm"}) {
-      if (detail::has_extension(source, extension)) return 1;
-    }
-    return 0;
+    if (known_by_content(source) != nullptr) return 2;
+    return known_by_name(source) != nullptr ? 1 : 0;
   }
 
   [[nodiscard]] StoredVolume read(const std::string& source, const ReadOptions& options,

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <isolux/bake/bake.h>
+#include <isolux/core/surface_colour.h>
 #include <isolux/volume_io/light_file.h>
 
 #include <optional>
@@ -22,8 +23,10 @@ namespace isolux {
 /// \throw InvalidInput unless the light was baked for this volume; it names both.
 void require_light_of(const LightFile& light, const Volume& volume, const std::string& light_path);
 
-/// The albedo that the light's scene gives this isovalue; 0.8 where the file says nothing.
-[[nodiscard]] Vec3f light_albedo(const LightFile& light, float isovalue);
+/// The albedo and emission of an isovalue's surface in a scene.
+[[nodiscard]] SurfaceColour surface_colour(const Scene& scene, float isovalue);
+/// Those that the light's scene gives it; where the file says nothing, an albedo of 0.8.
+[[nodiscard]] SurfaceColour surface_colour(const LightFile& light, float isovalue);
 
 /// The scene that the light was baked in; nothing where the file does not tell all of it (an image environment).
 [[nodiscard]] std::optional<Scene> light_scene(const LightFile& light);

@@ -2,6 +2,7 @@
 
 #include <isolux/core/field.h>
 #include <isolux/core/run.h>
+#include <isolux/core/surface_colour.h>
 #include <isolux/core/volume.h>
 #include <isolux/render/camera.h>
 #include <isolux/render/image.h>
@@ -42,11 +43,11 @@ struct RenderSettings {
 /// e at a surface point.
 using LightAt = std::function<Vec3f(const SurfacePoint&)>;
 
-/// The baked light on a diffuse surface: albedo times e. The inner side, which has no light of its own, is drawn in a
-/// dim local shade.
-[[nodiscard]] Shader global_shader(LightAt light, const Vec3f& albedo);
+/// The baked light on a diffuse surface: albedo times e and what it emits. The inner side, which has no light of its
+/// own, is drawn in a dim local shade.
+[[nodiscard]] Shader global_shader(LightAt light, const SurfaceColour& colour);
 /// The same with light of both sides, each where the camera sees it.
-[[nodiscard]] Shader global_shader(LightAt outer, LightAt inner, const Vec3f& albedo);
+[[nodiscard]] Shader global_shader(LightAt outer, LightAt inner, const SurfaceColour& colour);
 
 /// What graphics hardware shows without global light: a headlight and a hemisphere of sky, no shadows.
 [[nodiscard]] Shader local_shader(const Vec3f& albedo);

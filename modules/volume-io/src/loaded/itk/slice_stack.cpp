@@ -8,6 +8,9 @@
 #include <glm/geometric.hpp>
 
 namespace isolux::detail {
+namespace {
+constexpr double kLeastRise = 0.5;
+}  // namespace
 
 Lattice stack_slices(const std::string& source, std::vector<Slice>& slices, std::optional<double> gap) {
   Lattice lattice = slices.front().lattice;
@@ -31,7 +34,9 @@ Lattice stack_slices(const std::string& source, std::vector<Slice>& slices, std:
   lattice.size.z = int(slices.size());
   const Vec3 step = (slices.back().lattice.frame.origin - lattice.frame.origin) / double(slices.size() - 1);
   if (gap) {
-    lattice.frame.axes[2] = (glm::length(step) > 0.0 ? glm::normalize(step) : normal) * *gap;
+    // A gantry is tilted by 30 degrees at most; what lies flatter is no stack but noise, or a shift in the plane.
+    const bool stacked = glm::dot(step, normal) > kLeastRise * glm::length(step);
+    lattice.frame.axes[2] = (stacked ? glm::normalize(step) : normal) * *gap;
     return lattice;
   }
   for (std::size_t i = 0; i < slices.size(); ++i) {
