@@ -58,9 +58,10 @@ function(isolux_flags target)
     -ffp-contract=off                        # the same bits with and without FMA instructions
     $<$<AND:$<CXX_COMPILER_ID:GNU>,$<BOOL:${ISOLUX_UNITY}>>:-Wno-subobject-linkage>  # a source's own names, though it is included
     $<$<BOOL:${ISOLUX_WERROR}>:-Werror>)
-  # Instruction sets that no kernel is compiled for: SSSE3, which few machines have without SSE4, and those whose vectors have no fixed size.
+  # Instruction sets that no kernel is compiled for: SSSE3, which few machines have without SSE4; AVX3_DL, which adds nothing that kernels use
+  # to AVX3 and is a machine's own with -march=native; and those whose vectors have no fixed size.
   target_compile_definitions(${target} PRIVATE
-    "HWY_DISABLED_TARGETS=(HWY_SSSE3|HWY_SVE|HWY_SVE2|HWY_SVE_256|HWY_SVE2_128|HWY_RVV)")
+    "HWY_DISABLED_TARGETS=(HWY_SSSE3|HWY_AVX3_DL|HWY_SVE|HWY_SVE2|HWY_SVE_256|HWY_SVE2_128|HWY_RVV)")
   # One search path for where it is built and where it is installed: CMake pads those it edits, and an empty entry means the current folder.
   set(path ${ISOLUX_LOADED_BUILD_DIR} ${CMAKE_BUILD_RPATH} ${CMAKE_INSTALL_RPATH})
   set_target_properties(${target} PROPERTIES BUILD_WITH_INSTALL_RPATH ON INSTALL_RPATH_USE_LINK_PATH ON INSTALL_RPATH "${path}")
