@@ -72,7 +72,8 @@ function(isolux_flags target)
   if(ISOLUX_SANITIZE)
     target_compile_options(${target} PRIVATE -fsanitize=${ISOLUX_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer
       $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized>)  # GCC 12: false positives in the standard library's own headers
-    target_link_options(${target} PRIVATE -fsanitize=${ISOLUX_SANITIZE})
+    # AddressSanitizer loads libraries in the program's place, and a RUNPATH serves its owner alone; an RPATH serves all.
+    target_link_options(${target} PRIVATE -fsanitize=${ISOLUX_SANITIZE} LINKER:--disable-new-dtags)
   endif()
 endfunction()
 
