@@ -1,8 +1,8 @@
 #include <fmt/format.h>
 #include <isolux/bake/version.h>
+#include <isolux/core/machine_memory.h>
 #include <isolux/core/parallel.h>
 #include <sys/utsname.h>
-#include <unistd.h>
 
 #include <ctime>
 #include <fstream>
@@ -40,7 +40,7 @@ std::string vector_extensions() {
 std::string machine_description(const SuiteContext& context) {
   utsname system{};
   uname(&system);
-  const double gib = double(sysconf(_SC_PHYS_PAGES)) * double(sysconf(_SC_PAGE_SIZE)) / double(1 << 30);
+  const double gib = machine_memory() / double(1 << 30);
   const std::time_t now = std::time(nullptr);
   std::tm day{};
   gmtime_r(&now, &day);

@@ -24,6 +24,7 @@ namespace {
 
 using namespace isolux;
 using namespace isolux::bench;
+namespace fs = std::filesystem;
 
 struct Arguments {
   std::vector<std::string> names;
@@ -67,32 +68,34 @@ int parse(int argc, char** argv, Arguments& arguments, Session& session) {
   return -1;
 }
 
-/// The results' folder, made before the first suite, so that no minutes are lost to one that cannot be. One that was
-/// made and stays empty, as no suite ended, goes again.
+/// The results' folder, made before the first suite, so that no minutes are lost to one that cannot be. Folders that
+/// were made and stay empty, as no suite ended, go again.
 class ResultFolder {
  public:
   /// \throw IoError
-  explicit ResultFolder(const std::string& folder) : folder_(folder) {
+  explicit ResultFolder(const fs::path& folder) {
     std::error_code error;
-    made_ = std::filesystem::create_directories(folder, error);
-    if (error) throw IoError(fmt::format("{}: cannot be made a folder: {}", folder, error.message()));
-    require_writable((std::filesystem::path(folder) / "report.md").string());
+    for (fs::path missing = fs::absolute(folder, error);
+         !error && !fs::exists(missing, error) && missing.has_parent_path(); missing = missing.parent_path())
+      made_.push_back(missing);
+    fs::create_directories(folder, error);
+    if (error) throw IoError(fmt::format("{}: cannot be made a folder: {}", folder.string(), error.message()));
   }
   ResultFolder(const ResultFolder&) = delete;
   ResultFolder& operator=(const ResultFolder&) = delete;
   ~ResultFolder() {
     std::error_code ignored;
-    if (made_) std::filesystem::remove(folder_, ignored);
+    for (const fs::path& folder : made_) fs::remove(folder, ignored);
   }
 
  private:
-  std::string folder_;
-  bool made_ = false;
+  std::vector<fs::path> made_;  ///< the innermost first
 };
 
 /// 1 if a claim of a suite did not hold.
 int run_suites(const Arguments& arguments, Session& session) {
   const ResultFolder folder(arguments.folder);
+  require_writable((fs::path(arguments.folder) / "report.md").string());
   SuiteContext context{.effort = arguments.effort,
                        .run = {.seed = session.run.seed, .threads = session.run.threads, .stop = session.run.stop},
                        .stages = builtin_stages(),

@@ -6,7 +6,6 @@
 
 #include <cerrno>
 #include <cstdio>
-#include <cstring>
 
 namespace isolux {
 namespace {
@@ -40,8 +39,7 @@ void put_out(const std::string& text) { std::fwrite(text.data(), 1, text.size(),
 void flush_output() {
   errno = 0;
   if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0)
-    throw IoError(fmt::format("standard output: {}",
-                              errno != 0 ? std::strerror(errno) : "not all that was printed could be written"));
+    throw IoError(fmt::format("standard output: writing failed: {}", reason_of(errno)));
 }
 
 }  // namespace isolux

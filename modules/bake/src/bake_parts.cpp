@@ -2,10 +2,10 @@
 
 #include <fmt/format.h>
 #include <isolux/core/error.h>
+#include <isolux/core/machine_memory.h>
 #include <isolux/core/release.h>
 #include <isolux/core/stopwatch.h>
 #include <isolux/resample/fill_unlit.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <bit>
@@ -22,7 +22,7 @@ namespace {
 /// InvalidInput
 void require_memory(const Index3& texels) {
   const double bytes = double(sizeof(float)) * texels.x * texels.y * texels.z;
-  const double there = double(sysconf(_SC_PHYS_PAGES)) * double(sysconf(_SC_PAGE_SIZE));
+  const double there = machine_memory();
   if (bytes <= there) return;
   throw InvalidInput(fmt::format("{}x{}x{} texels take {:.1f} GB, and this machine has {:.1f} GB of memory", texels.x,
                                  texels.y, texels.z, bytes * 1e-9, there * 1e-9));

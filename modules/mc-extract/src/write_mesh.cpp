@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cctype>
 #include <cerrno>
-#include <cstring>
 #include <filesystem>
 #include <fstream>
 
@@ -27,7 +26,7 @@ void write_bytes(const std::vector<char>& bytes, const std::string& path) {
   std::ofstream file(path, std::ios::binary);
   file.write(bytes.data(), std::streamsize(bytes.size()));
   file.close();
-  if (!file) throw IoError(fmt::format("{}: writing failed: {}", path, std::strerror(errno)));
+  if (!file) throw IoError(fmt::format("{}: writing failed: {}", path, reason_of(errno)));
 }
 
 }  // namespace mc

@@ -8,7 +8,6 @@
 
 #include <OpenMesh/Core/IO/MeshIO.hh>
 #include <cerrno>
-#include <cstring>
 #include <fstream>
 #include <locale>
 
@@ -71,7 +70,7 @@ void write_with_openmesh(const IsoMesh& mesh, std::span<const Rgb8> colours, con
     written = OpenMesh::IO::write_mesh(mesh, file, extension, options, kDigits);
   }
   file.close();
-  if (!written || !file) throw IoError(fmt::format("{}: writing failed: {}", path, std::strerror(errno)));
+  if (!written || !file) throw IoError(fmt::format("{}: writing failed: {}", path, reason_of(errno)));
 }
 
 }  // namespace isolux::mc

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cerrno>
 #include <cmath>
-#include <cstring>
 #include <fstream>
 #include <new>
 
@@ -47,7 +46,7 @@ void write_png(const Image& image, const std::string& path) {
   std::ofstream file(path, std::ios::binary);
   file.write(png.data(), std::streamsize(png.size()));
   file.close();
-  if (!file) throw IoError(fmt::format("{}: writing failed: {}", path, std::strerror(errno)));
+  if (!file) throw IoError(fmt::format("{}: writing failed: {}", path, reason_of(errno)));
 }
 
 Image side_by_side(const Image& left, const Image& right, int gap, const Vec3f& colour) {

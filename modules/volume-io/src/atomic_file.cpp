@@ -78,9 +78,7 @@ void fill(const fs::path& file, const std::string& path, const std::function<voi
   errno = 0;
   write(stream);
   stream.close();
-  if (!stream)
-    throw IoError(
-        fmt::format("{}: writing failed: {}", path, errno == 0 ? "the disk may be full" : std::strerror(errno)));
+  if (!stream) throw IoError(fmt::format("{}: writing failed: {}", path, reason_of(errno)));
 }
 
 // A pipe or a device (/dev/stdout, /dev/null) is written to, never replaced.

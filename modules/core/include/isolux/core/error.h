@@ -35,4 +35,7 @@ class Cancelled : public Error {
   using Error::Error;
 };
 
+/// What the system says of an errno after writing failed; it says nothing (0) where a library noticed.
+[[nodiscard]] std::string reason_of(int error_number);
+
 }  // namespace isolux
