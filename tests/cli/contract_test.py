@@ -3,10 +3,8 @@ import json
 import math
 import os
 import re
-import signal
 import struct
 import subprocess
-import time
 import unittest
 
 from support import ISOLUX, CommandLineTest, nrrd_header, ply
@@ -149,21 +147,6 @@ class Bake(CommandLineTest):
                 self.succeed("probe", "gen:sphere:16", "--light", "light.nrrd", "--points", "points.csv", "-o", "out.csv")
                 rows = self.read("out.csv").decode().splitlines()[1:]
                 self.assertEqual([row.split(",")[:3] for row in rows], [["0.5", "0.5", "0.8"]])
-
-    def test_signals_stop_cleanly(self):
-        commands = [("bake", "gen:gyroid:64", "-o", "light.nrrd", "--rays", "4096")]
-        if self.isolux("bench", "--help").returncode == 0:  # a build may leave it out
-            commands.append(("bench", "trace", "-o", "results"))
-        for command in commands:
-            for number in (signal.SIGINT, signal.SIGTERM):
-                with self.subTest(command=command[0], signal=number):
-                    process = subprocess.Popen([ISOLUX, *command], cwd=self.folder, stderr=subprocess.PIPE, text=True)
-                    time.sleep(1.0)
-                    process.send_signal(number)
-                    _, errors = process.communicate(timeout=60)
-                    self.assertEqual(process.returncode, 130, errors)
-                    self.assertIn(f"isolux: error: {command[0]}: interrupted", errors)
-                    self.assertEqual(os.listdir(self.folder), [])
 
 
 class LightOfAnotherVolume(CommandLineTest):

@@ -1,9 +1,10 @@
-"""What a program does beside its work: full disks, closed streams, files in its way."""
+"""What a program does beside its work: full disks, closed streams, files in its way, interrupts."""
 import os
 import resource
 import signal
 import struct
 import subprocess
+import time
 import unittest
 
 from support import ISOLUX, CommandLineTest
@@ -85,6 +86,23 @@ class Outputs(CommandLineTest):
         self.assertEqual(self.read("scan.nrrd"), scan)
         self.succeed("bake", "scan.nrrd", "-o", "/dev/null", "--report", "/dev/null", "--rays", 1, "--quiet")
         self.succeed("convert", "scan.nrrd", "scan.nrrd", "--compress")  # in place: nothing is lost
+
+
+class Signals(CommandLineTest):
+    def test_stop_cleanly(self):
+        commands = [("bake", "gen:gyroid:64", "-o", "light.nrrd", "--rays", "4096")]
+        if self.isolux("bench", "--help").returncode == 0:  # a build may leave it out
+            commands.append(("bench", "trace", "-o", "results"))
+        for command in commands:
+            for number in (signal.SIGINT, signal.SIGTERM):
+                with self.subTest(command=command[0], signal=number):
+                    process = subprocess.Popen([ISOLUX, *command], cwd=self.folder, stderr=subprocess.PIPE, text=True)
+                    time.sleep(1.0)
+                    process.send_signal(number)
+                    _, errors = process.communicate(timeout=60)
+                    self.assertEqual(process.returncode, 130, errors)
+                    self.assertIn(f"isolux: error: {command[0]}: interrupted", errors)
+                    self.assertEqual(os.listdir(self.folder), [])
 
 
 if __name__ == "__main__":

@@ -17,11 +17,7 @@ include(GNUInstallDirs)
 get_filename_component(ISOLUX_ROOT ${CMAKE_CURRENT_LIST_DIR}/../.. ABSOLUTE)
 
 set(ISOLUX_VERSION 0.1.0)
-# Libraries that are loaded when first needed: where they are installed, how programs installed beside them get there, and the folder that
-# the same way leads to from the build tree's apps.
-set(ISOLUX_LOADED_DIR ${CMAKE_INSTALL_LIBDIR}/isolux)
-file(RELATIVE_PATH ISOLUX_TO_LOADED ${CMAKE_INSTALL_FULL_BINDIR} ${CMAKE_INSTALL_FULL_LIBDIR}/isolux)
-get_filename_component(ISOLUX_LOADED_BUILD_DIR ${CMAKE_BINARY_DIR}/apps/any/${ISOLUX_TO_LOADED} ABSOLUTE)
+include(${CMAKE_CURRENT_LIST_DIR}/IsoluxLoaded.cmake)
 option(ISOLUX_TESTS "Build the tests" ON)
 option(ISOLUX_BENCHES "Build the kernel benchmarks" OFF)
 option(ISOLUX_EXAMPLES "Build the examples of the modules' READMEs" ON)
@@ -77,13 +73,6 @@ function(isolux_flags target)
   endif()
 endfunction()
 
-# A program that is installed. It finds libraries that are loaded by where it is itself, so that an installation can be moved.
-function(isolux_install_program target)
-  set(path $ORIGIN/${ISOLUX_TO_LOADED} ${CMAKE_INSTALL_RPATH})
-  set_target_properties(${target} PROPERTIES INSTALL_RPATH "${path}")
-  install(TARGETS ${target} COMPONENT isolux)
-endfunction()
-
 # Links packages; missing ones end the configuration with the Debian package's name left to the README.
 function(isolux_link target visibility)
   foreach(package IN LISTS ARGN)
@@ -103,38 +92,11 @@ function(isolux_need_module name)
   endif()
 endfunction()
 
-# The shared library of src/loaded/KEY, which the backend KEY loads by its file name, ISOLUX_KEY_LIBRARY, when it is first needed: programs
-# begin without its package. It is found by the program's RUNPATH: isolux_flags and isolux_install_program
-# give it to ours, the module's link options to others'.
-function(_isolux_loaded_library name id key package)
-  set(library isolux_${id}_${key})
-  file(GLOB sources CONFIGURE_DEPENDS src/loaded/${key}/*.cpp)
-  add_library(${library} MODULE ${sources})
-  set_target_properties(${library} PROPERTIES OUTPUT_NAME ${library}-${ISOLUX_VERSION}
-    LIBRARY_OUTPUT_DIRECTORY $<1:${ISOLUX_LOADED_BUILD_DIR}>)
-  target_link_libraries(${library} PRIVATE isolux::core)
-  isolux_flags(${library})
-  set_target_properties(${library} PROPERTIES INSTALL_RPATH "${CMAKE_INSTALL_RPATH}")
-  if(NOT ISOLUX_SANITIZE)
-    target_link_options(${library} PRIVATE LINKER:-z,defs)  # what is missing is missing now, not when it is loaded
-  endif()
-  isolux_link(${library} PRIVATE fmt ${package})
-  string(TOUPPER ${key} macro)
-  target_include_directories(${library} PRIVATE include)
-  target_compile_definitions(isolux_${id} PRIVATE ISOLUX_${macro}_LIBRARY="$<TARGET_FILE_NAME:${library}>")
-  target_link_libraries(isolux_${id} PRIVATE ${CMAKE_DL_LIBS})
-  add_dependencies(isolux_${id} ${library})
-  set(installed ${ISOLUX_LOADED_DIR})
-  if(NOT IS_ABSOLUTE ${installed})
-    set(installed $<INSTALL_PREFIX>/${installed})
-  endif()
-  target_link_options(isolux_${id} INTERFACE "$<INSTALL_INTERFACE:LINKER:-rpath,${installed}>")
-  cmake_path(IS_PREFIX ISOLUX_ROOT ${CMAKE_SOURCE_DIR} is_ours)
-  if(NOT is_ours)  # a part of somebody's project, whose programs know nothing of isolux_flags
-    target_link_options(isolux_${id} INTERFACE "$<BUILD_INTERFACE:LINKER:-rpath,${ISOLUX_LOADED_BUILD_DIR}>")
-  endif()
-  install(TARGETS ${library} LIBRARY DESTINATION ${ISOLUX_LOADED_DIR} COMPONENT ${name})
-endfunction()
+# "key:Package", apart.
+macro(_isolux_pair pair out_key out_package)
+  string(REGEX REPLACE ":.*" "" ${out_key} ${pair})
+  string(REGEX REPLACE ".*:" "" ${out_package} ${pair})
+endmacro()
 
 # Writes the function that fills a registry: one call per file of src/backends.
 function(_isolux_catalogue name id stage catalogue default optional out_sources out_found)
@@ -148,9 +110,7 @@ function(_isolux_catalogue name id stage catalogue default optional out_sources 
     get_filename_component(key ${file} NAME_WE)
     set(missing "")
     foreach(pair IN LISTS optional)
-      string(REPLACE ":" ";" parts ${pair})
-      list(GET parts 0 pair_key)
-      list(GET parts 1 package)
+      _isolux_pair(${pair} pair_key package)
       if(pair_key STREQUAL key)
         if(package IN_LIST ISOLUX_WITHOUT)
           set(missing "switched off: ${package} is in ISOLUX_WITHOUT")
@@ -235,9 +195,7 @@ function(isolux_module name)
   isolux_link(${lib} PUBLIC ${M_PUBLIC_PACKAGES})
   set(backend_packages "")
   foreach(pair IN LISTS backends)
-    string(REPLACE ":" ";" parts ${pair})
-    list(GET parts 0 key)
-    list(GET parts 1 package)
+    _isolux_pair(${pair} key package)
     if(key IN_LIST M_LOADED)
       _isolux_loaded_library(${name} ${id} ${key} ${package})
     else()

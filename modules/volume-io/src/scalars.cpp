@@ -138,10 +138,10 @@ std::uint64_t checked_count(const std::string& path, std::span<const std::int64_
 bool fits_float(double value) { return std::isfinite(float(value)) || !std::isfinite(value); }
 
 bool reads_as(ScalarType type, std::string_view text) {
-  if (text.starts_with('+') && !text.starts_with("+-")) text.remove_prefix(1);
   return with_type(type, [&](auto zero) {
     using T = decltype(zero);
     if constexpr (std::is_integral_v<T>) {
+      if (text.starts_with('+') && !text.starts_with("+-")) text.remove_prefix(1);
       T value{};
       const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
       return error == std::errc() && end == text.data() + text.size();

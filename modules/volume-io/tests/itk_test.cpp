@@ -195,13 +195,14 @@ TEST_F(Itk, RefusesVtkTextThatIsNoNumberOfItsType) {
       EXPECT_THAT(refused("a.vtk", with(type, word)),
                   HasSubstr("'" + word + "', value 3 of the data, is no finite " + name));
   };
-  expect_refused("float", {"abc", "1,5", "0x10", "1e39", "1e999", "nan", "+-3", "--3"}, "float32");
+  expect_refused("float", {"abc", "1,5", "0x10", "1e39", "1e999", "nan", "+-3", "++3", "--3"}, "float32");
   expect_refused("double", {"1e999", "nan", "inf", "-inf"}, "float64");
-  expect_refused("short", {"3.0", "3e2", "70000", "-32769"}, "int16");
+  expect_refused("short", {"3.0", "3e2", "70000", "-32769", "++3", "+-3"}, "int16");
   expect_refused("unsigned_char", {"1.5", "300", "-1", "3."}, "uint8");
   expect_refused("long", {"9223372036854775808", "1e3"}, "int64");
   expect_ramp(read_volume(folder_.write("a.vtk", with("short", "3"))));
   expect_ramp(read_volume(folder_.write("a.vtk", with("int", "+3"))));
+  expect_ramp(read_volume(folder_.write("a.vtk", with("unsigned_char", "3"))));
   expect_ramp(read_volume(folder_.write("a.vtk", with("double", "+3.0e0"))));
   EXPECT_EQ(read_volume(folder_.write("a.vtk", with("double", "1e-400"))).values.values()[3], 0.0f);
 }
