@@ -173,8 +173,7 @@ TEST(Bake, FitsKnownIsovaluesAloneAndInBricks) {
     settings.resampler.name = "fit";
     settings.trace.rays = 16;
     settings.trace.bounces = 0;
-    const LightFile light =
-        make_light_file(bake(volume, scene, settings, builtin_stages(), {}), volume, scene, settings, {});
+    const LightFile light = make_light_file(bake(volume, scene, settings, builtin_stages(), {}), volume, scene, {});
     const std::string path = testing::TempDir() + "range.nrrd";
     write_light(light, path, volume.space, {.compress = true});
     const LightFile back = read_light(path);

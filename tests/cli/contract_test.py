@@ -101,13 +101,13 @@ class Bake(CommandLineTest):
     def test_an_error_target_is_met(self):
         self.bake("--rmse", 0.01, "--report", "report.json", volume="gen:two-spheres:12", rays=16)
         self.assertLess(self.report()["rmse_estimate"], 0.0115)
-        self.bake("--rmse", 0.02, "--error-grid", "error.nrrd", "--report", "report.json", volume="gen:gyroid:12")
+        self.bake("--rmse", 0.02, "--error-grid", "error.nrrd", "--report", "report.json", volume="gen:gyroid:17")
         fields, _, data = nrrd_header(self.path("error.nrrd"))
         self.assertEqual(fields["isolux.quantity"], "standard error of irradiance/pi")
-        errors = struct.unpack("<%df" % 11**3, data)
+        errors = struct.unpack("<%df" % 16**3, data)
         report = self.report()
         self.assertLess(report["rmse_estimate"], 0.02)
-        self.assertEqual(report["skipped"]["sites_flat"] + report["sites"], 11**3)
+        self.assertEqual(report["skipped"]["sites_flat"] + report["sites"], 16**3)
         self.assertGreater(report["rays_a_site"]["most"], report["rays_a_site"]["least"])
         # Texels without a site repeat their neighbours' errors.
         self.assertAlmostEqual(math.sqrt(sum(e * e for e in errors) / len(errors)), report["rmse_estimate"], delta=0.004)

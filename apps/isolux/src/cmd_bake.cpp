@@ -93,6 +93,7 @@ void report_bake(const BakeResult& result, Session& session) {
   report["sweeps"] = result.sweeps;
   report["unlit_texels"] = result.unlit_texels;
   report["rmse_estimate"] = result.rmse_estimate;
+  report["reading_error"] = result.reading_error;
   for (std::size_t i = 0; i < result.sides.size(); ++i) {
     const SideFigures& side = result.sides[i];
     report["sides"][i == 0 ? "outer" : "inner"] = {
@@ -107,14 +108,23 @@ void say_of_memory(const BakeResult& result, const Session& session) {
         result.sweeps == 0 ? "reflections are followed by paths" : "they are traced for the last reflection alone";
     session.say(fmt::format("{} rays are too many to keep: {}", it->second, instead));
   }
+  if (result.skipped.contains("reading_beyond_error"))
+    session.say(
+        "read from texels, reflections would be wrong by more than the error asked: they are followed by paths");
   if (result.skipped.contains("rounds_beyond_memory"))
     session.say("the error asked is not reached: more rays than can be kept; --bounce-method paths needs no memory");
 }
 
 /// Small volumes and rough light can end above what was asked.
 void say_of_error(const BakeResult& result, double asked, const Session& session) {
-  if (asked > 0.0 && result.rmse_estimate > kNear * asked)
-    session.say(fmt::format("the error asked is not reached: about {:.4f} of {}", result.rmse_estimate, asked));
+  if (!(asked > 0.0 && result.rmse_estimate > kNear * asked)) return;
+  std::string why;
+  if (result.reading_error > 0.0)
+    why = fmt::format(
+        "; reading reflections from texels makes {:.4f} of it, which more texels or --bounce-method paths "
+        "take away",
+        result.reading_error);
+  session.say(fmt::format("the error asked is not reached: about {:.4f} of {}{}", result.rmse_estimate, asked, why));
 }
 
 /// --texels auto
@@ -151,10 +161,10 @@ void run_bake(const BakeOptions& options, Session& session) {
       known ? fmt::format("about {:.4f}", result.rmse_estimate) : "unknown: one ray a site tells nothing about it"));
   session.timed("write", [&] {
     if (!options.error_grid.empty()) {
-      write_light(make_error_file(result, volume, scene, settings, session.run), options.error_grid, volume.space,
+      write_light(make_error_file(result, volume, scene, session.run), options.error_grid, volume.space,
                   {.compress = options.compress});
     }
-    const LightFile light = make_light_file(std::move(result), volume, scene, settings, session.run);
+    const LightFile light = make_light_file(std::move(result), volume, scene, session.run);
     session.report["settings"] = nlohmann::json::parse(light.metadata.at("isolux.settings"));
     write_light(light, options.output, volume.space, {.compress = options.compress});
   });

@@ -17,8 +17,7 @@ int main(int argc, char** argv) try {
   const isolux::Vec3 middle = 0.5 * isolux::Vec3(volume.lattice().size - 1);
   std::printf("%zu sites, error about %.3f, light in the middle %.3f\n", result.sites, result.rmse_estimate,
               double(reader.at_index(middle).x));
-  if (argc > 2)
-    write_light(make_light_file(std::move(result), volume, scene, settings, run), argv[2], volume.space, {});
+  if (argc > 2) write_light(make_light_file(std::move(result), volume, scene, run), argv[2], volume.space, {});
 } catch (const isolux::Error& error) {
   std::fprintf(stderr, "%s\n", error.what());
   return 1;

@@ -15,12 +15,15 @@
 #include "bake_parts.h"
 #include "both_sides.h"
 #include "light_by_need.h"
+#include "reading_error.h"
 #include "resampling_choice.h"
 #include "sites_by_need.h"
 
 namespace isolux {
 namespace {
 
+/// More rays than a small bake says an error takes: it knows its own error to some percent.
+constexpr double kMargin = 1.15;
 constexpr double kLeastSeconds = 1e-3;  ///< where a time is over before any ray
 
 BakeResult bake_paths(const Volume& volume, const Scene& scene, const BakeSettings& settings, FoundSites found,
@@ -43,15 +46,14 @@ BakeResult bake_paths(const Volume& volume, const Scene& scene, const BakeSettin
 
 /// Whether sites are so many that not even a few rays of each can be kept.
 bool keeps_too_few(const BakeSettings& settings, std::size_t sites) {
-  return settings.bounce_method == BounceMethod::kIterated &&
-         kept_rays_a_site(settings, sites, std::max(settings.trace.rays, 1)) == 0;
+  return iterates(settings) && kept_rays_a_site(settings, sites, std::max(settings.trace.rays, 1)) == 0;
 }
 
 /// Without bounces kept rays see what the wide tracer sees, unless that one aims at light sources or at the bright
 /// parts of an image.
 bool keeps_rays(const BakeSettings& settings, const Scene& scene, std::size_t sites) {
   // Rays can be doubled only where all are kept.
-  if (settings.bounce_method == BounceMethod::kIterated)
+  if (iterates(settings))
     return !has_target(settings) || (!has_lamps(scene) && kept_rays_a_site(settings, sites, kFirstRays) == kFirstRays);
   return has_target(settings) && settings.trace.bounces == 0 && settings.tracer.name == "wide" && !has_lamps(scene);
 }
@@ -64,6 +66,12 @@ bool in_parts(const Volume& volume, const Scene& scene, const BakeSettings& sett
 BakeResult bake_side(const Volume& volume, const Scene& scene, const BakeSettings& settings, FoundSites found,
                      const Stages& stages, const Run& run);
 
+/// Whether reflections have to be followed by paths to reach the error asked.
+bool wants_paths(const BakeSettings& settings, const BakeResult& iterated) {
+  return settings.bounce_method == BounceMethod::kIteratedOrPaths && settings.target_rmse > 0.0 &&
+         !reading_allows(settings.target_rmse, iterated.reading_error);
+}
+
 /// One number of rays for all sites, from what a small bake shows.
 BakeSettings with_rays_for_target(const Volume& volume, const Scene& scene, BakeSettings settings,
                                   const FoundSites& found, const Stages& stages, const Run& run, double& seconds) {
@@ -74,13 +82,24 @@ BakeSettings with_rays_for_target(const Volume& volume, const Scene& scene, Bake
   pilot.trace.rays = 16;
   const BakeResult seen = bake_side(volume, scene, pilot, found, stages, run);
   double factor = std::numeric_limits<double>::infinity();
-  if (settings.target_rmse > 0.0) factor = std::pow(seen.rmse_estimate / settings.target_rmse, 2.0);
+  if (settings.target_rmse > 0.0) factor = kMargin * std::pow(seen.rmse_estimate / settings.target_rmse, 2.0);
   if (settings.target_seconds > 0.0)
     factor = std::min(factor, (settings.target_seconds - watch.seconds()) / watch.seconds());
   settings.target_rmse = settings.target_seconds = 0.0;
   settings.trace.rays = int(std::clamp(std::ceil(pilot.trace.rays * factor), double(pilot.trace.rays), 0x1p20));
   seconds = watch.seconds();
   return settings;
+}
+
+/// After `seconds` that found reading reflections from texels as wrong as the light may be.
+BakeResult bake_by_paths_instead(const Volume& volume, const Scene& scene, BakeSettings settings, double seconds,
+                                 const Stages& stages, const Run& run) {
+  settings.bounce_method = BounceMethod::kPaths;
+  BakeResult result =
+      bake_side(volume, scene, settings, find_sites(volume, scene.outer, settings, stages, run), stages, run);
+  result.skipped["reading_beyond_error"] = 1;
+  result.seconds["pilot"] += seconds;
+  return result;
 }
 
 /// Lights the outer side of `scene`.
@@ -96,8 +115,12 @@ BakeResult bake_side(const Volume& volume, const Scene& scene, const BakeSetting
     by_paths.bounce_method = BounceMethod::kPaths;
     return bake_side(volume, scene, by_paths, std::move(found), stages, run);
   }
-  if (keeps_rays(settings, scene, found.sites.size()))
-    return KeptRays(volume, scene, settings, std::move(found), stages, run).last_light(scene, run);
+  const Stopwatch watch;
+  if (keeps_rays(settings, scene, found.sites.size())) {
+    BakeResult result = KeptRays(volume, scene, settings, std::move(found), stages, run).last_light(scene, run);
+    if (!wants_paths(settings, result)) return result;
+    return bake_by_paths_instead(volume, scene, settings, watch.seconds(), stages, run);
+  }
   if (!has_target(settings)) {
     if (!can_bake_in_parts(volume, settings, stages))
       return bake_paths(volume, scene, settings, std::move(found), stages, run);
@@ -107,6 +130,8 @@ BakeResult bake_side(const Volume& volume, const Scene& scene, const BakeSetting
   double pilot_seconds = 0.0;
   const BakeSettings chosen = with_rays_for_target(volume, scene, settings, found, stages, run, pilot_seconds);
   BakeResult result = bake_side(volume, scene, chosen, std::move(found), stages, run);
+  if (wants_paths(settings, result))
+    return bake_by_paths_instead(volume, scene, settings, watch.seconds(), stages, run);
   result.seconds["pilot"] = pilot_seconds;
   return result;
 }
@@ -123,6 +148,13 @@ BakeResult bake_both(const Volume& volume, const Scene& scene, const BakeSetting
   BakeResult inner = bake_side(volume, scene_of_side(scene, LevelSetSide::kInner), settings,
                                turned_round(std::move(found)), stages, run);
   return both_sides(std::move(outer), std::move(inner));
+}
+
+/// Iterations leave sweeps.
+BakeSettings as_done(BakeSettings settings, const BakeResult& result) {
+  if (settings.trace.bounces != 0)
+    settings.bounce_method = result.sweeps > 0 ? BounceMethod::kIterated : BounceMethod::kPaths;
+  return settings;
 }
 
 }  // namespace
@@ -148,7 +180,10 @@ BakeSettings with_defaults(BakeSettings settings, const Stages& stages) {
     const bool keeps = settings.resampler.name == "direct" ||
                        (settings.resampler.name == "fit" && settings.texel_sites == TexelSites::kAll);
     const bool iterated = settings.tracer.name.empty() && keeps && settings.trace.bounces != 0;
-    settings.bounce_method = iterated ? BounceMethod::kIterated : BounceMethod::kPaths;
+    const bool by_error =
+        settings.target_rmse > 0.0 && !(settings.target_seconds > 0.0) && settings.texel_sites == TexelSites::kAll;
+    const BounceMethod iterating = by_error ? BounceMethod::kIteratedOrPaths : BounceMethod::kIterated;
+    settings.bounce_method = iterated ? iterating : BounceMethod::kPaths;
   }
   if (settings.tracer.name.empty()) settings.tracer.name = stages.tracers.info({}).name;
   return settings;
@@ -171,7 +206,10 @@ BakeResult bake(const Volume& volume, const Scene& scene, const BakeSettings& gi
   if (settings.target_seconds > 0.0)
     settings.target_seconds = std::max(settings.target_seconds - watch.seconds(), kLeastSeconds);
   const auto light = scene.sides == LitSides::kBoth ? bake_both : bake_side;
-  return light(volume, scene, settings, std::move(found), stages, run);
+  BakeResult result = light(volume, scene, settings, std::move(found), stages, run);
+  settings.target_seconds = given.target_seconds;
+  result.settings = as_done(std::move(settings), result);
+  return result;
 }
 
 }  // namespace isolux

@@ -39,6 +39,7 @@ class PartBaker {
     const auto count = std::size_t(std::max(settings_.isovalue_parts, 0));
     const std::vector<ValueRange> parts = isovalue_parts(volume_, request(settings_.isovalues), count, run_);
     result_.seconds["sites"] += parting.seconds();
+    result_.sites = 0;  // where all were found before
     for (std::size_t p = 0; p < parts.size(); ++p) {
       const auto all = double(parts.size());
       light(parts[p], part_of(run_, double(p) / all, double(p + 1) / all));

@@ -62,13 +62,13 @@ int kept_rays_a_site(const BakeSettings& settings, std::size_t sites, int rays) 
   return kept < kFewest ? 0 : kept;
 }
 
-SampleSet standard_errors(SampleSet samples) {
+SampleSet standard_errors(SampleSet samples, double scale) {
   samples.channels = 1;
   release(samples.lamps);  // parts of the light, not of its error
   release(samples.lamps_variance);
   samples.radiance.resize(samples.size());
   std::transform(samples.variance.begin(), samples.variance.end(), samples.radiance.begin(),
-                 [](float variance) { return std::sqrt(variance); });
+                 [scale](float variance) { return std::sqrt(variance) * float(scale); });
   return samples;
 }
 
@@ -98,11 +98,15 @@ void finish_light(const Volume& volume, const SampleSet& samples, ResampledGrid 
 
 void finish_bake(const Volume& volume, SampleSet samples, const Resampler& resampler, const Lattice& texels,
                  const BakeSettings& settings, const Run& run, BakeResult& result) {
-  result.rmse_estimate = standard_error(samples.variance);
+  const double noise = standard_error(samples.variance);
+  result.rmse_estimate = std::hypot(noise, result.reading_error);
   const Stopwatch watch;
   finish_light(volume, samples, resampler.resample(volume, samples, texels, run), resampler, settings, run, result);
-  if (settings.wants_error_grid)
-    result.error = fill_unlit(resampler.resample(volume, standard_errors(std::move(samples)), texels, run), run);
+  if (settings.wants_error_grid) {
+    // Reading is wrong where rays hit, which is also where their number varies.
+    const double scale = noise > 0.0 ? result.rmse_estimate / noise : 1.0;
+    result.error = fill_unlit(resampler.resample(volume, standard_errors(std::move(samples), scale), texels, run), run);
+  }
   result.seconds["resample"] = watch.seconds();
 }
 

@@ -40,8 +40,8 @@ inline constexpr std::size_t kSamplesShown = 16384;
 /// Leaves the first `count` samples.
 void keep_first(std::size_t count, SampleSet& samples);
 
-/// Samples of their standard error instead of light.
-[[nodiscard]] SampleSet standard_errors(SampleSet samples);
+/// Samples of their standard error, times `scale`, instead of light.
+[[nodiscard]] SampleSet standard_errors(SampleSet samples, double scale = 1.0);
 
 /// A grid that `resampler` made of these samples, and perhaps of others like them, as the light of the bake.
 void finish_light(const Volume& volume, const SampleSet& samples, ResampledGrid partial, const Resampler& resampler,

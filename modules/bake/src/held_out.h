@@ -12,29 +12,36 @@
 
 namespace isolux {
 
-/// Texels whose light is traced to judge a prediction and never used for it: drawn at random, traced twice by paths
+/// Places whose light is traced to judge what was found there otherwise and never used for it: traced twice by paths,
 /// with other random numbers. Paths have no bias, so the mean product of both differences is the mean squared error
 /// whatever is wrong with the light, be it how reflections were read.
 class HeldOut {
  public:
-  /// At most 6,144 texels, or one of eight. \throw Cancelled
-  HeldOut(const Volume& volume, const Scene& scene, const Lattice& texels, const TexelSiteMaker& sites,
+  /// Of the light to judge, site i is number `numbers[i]`. \throw Cancelled
+  HeldOut(const Volume& volume, const Scene& scene, const Sites& sites, std::vector<std::size_t> numbers,
           const TraceSettings& settings, const Run& run);
 
   struct SquaredError {
-    double mean = 0.0;            ///< at least the standard error: few texels can agree by chance
-    double standard_error = 0.0;  ///< of the mean, as the texels are few and their light is noisy
+    double mean = 0.0;            ///< below 0 by chance alone; 0 if nothing is held out
+    double standard_error = 0.0;  ///< of the mean, as the places are few and their light is noisy
   };
-  /// Of light at all texels, the scene's channels each.
+  /// Of light with the scene's channels.
   [[nodiscard]] SquaredError squared_error(std::span<const float> light) const;
+  [[nodiscard]] std::span<const std::size_t> numbers() const { return numbers_; }
   [[nodiscard]] const TraceCounters& counters() const { return counters_; }
 
  private:
-  void draw(const Lattice& texels, const TexelSiteMaker& sites, const Run& run);
-
-  std::vector<std::size_t> texels_;
+  std::vector<std::size_t> numbers_;
   std::array<std::vector<float>, 2> light_;
   TraceCounters counters_;
 };
+
+/// Texels to hold out, drawn at random, all that can be lit being equally likely: at most 6,144, or one of eight.
+/// \throw Cancelled
+[[nodiscard]] std::vector<std::size_t> held_out_texels(const Lattice& texels, const TexelSiteMaker& sites,
+                                                       const Run& run);
+
+/// One number of each of `shares` equal shares of those below `count`. \pre shares <= count
+[[nodiscard]] std::vector<std::size_t> one_of_each_share(std::size_t count, std::size_t shares, const Run& run);
 
 }  // namespace isolux

@@ -6,6 +6,7 @@
 #include <isolux/resample/fill_unlit.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <glm/common.hpp>
@@ -15,6 +16,7 @@
 
 #include "bake_parts.h"
 #include "ray_budget.h"
+#include "reading_error.h"
 #include "resampling_choice.h"
 #include "standard_error.h"
 #include "texel_places.h"
@@ -88,6 +90,8 @@ KeptRays::KeptRays(const Volume& volume, const Scene& scene, const BakeSettings&
   one_of_ = std::max<std::size_t>(1, std::size_t(a_texel / kSitesEnough * double(kept) / double(rays)));
 }
 
+KeptRays::~KeptRays() = default;
+
 IlluminationGrid KeptRays::between_reflections(const SampleSet& samples, const Run& run) {
   if (!reads_means(settings_)) return fill_unlit(resampler_->resample(volume_, samples, texels_, run), run);
   // Samples are always of the same sites: settings_ says how many bounces, hence whether of all or some.
@@ -115,9 +119,10 @@ std::vector<std::uint32_t> KeptRays::wanting(const Solution& solution, double so
   RayBudget budget;
   const double error = standard_error(solution.samples.variance);
   if (settings_.target_rmse > 0.0) {
-    if (!(error > settings_.target_rmse)) return {};
+    const double noise = squared_noise_for(settings_.target_rmse, reading_error(solution.samples));
+    if (!(error * error > noise)) return {};
     // A little below, lest a last round serves a few sites.
-    budget.mean_variance = 0.95 * settings_.target_rmse * settings_.target_rmse;
+    budget.mean_variance = 0.95 * noise;
   }
   if (settings_.target_seconds > 0.0) {
     // The time of solving grows with the rays, which may double.
@@ -141,7 +146,14 @@ BakeResult KeptRays::light(const Scene& scene, const Run& run) {
   return result;
 }
 
+double KeptRays::reading_error(const SampleSet& samples) const { return judge_ == nullptr ? 0.0 : judge_->of(samples); }
+
 BakeResult KeptRays::last_light(const Scene& scene, const Run& run) && {
+  if (settings_.trace.bounces != 0) {
+    const Stopwatch watch;
+    judge_ = std::make_unique<const ReadingError>(volume_, scene, links_->sites(), settings_, run);
+    trace_seconds_ += watch.seconds();
+  }
   if (can_do_without_places(scene)) {
     const auto places = TexelPlaces::of(volume_.lattice(), texels_, links_->sites().positions);
     if (places) return light_without_places(scene, *places, run);
@@ -166,7 +178,7 @@ BakeResult KeptRays::light_without_places(const Scene& scene, const TexelPlaces&
   links_->let_places_go();
   SampleSet samples = trace_and_solve(scene, run, result);
   finish_links();
-  result.rmse_estimate = standard_error(samples.variance);
+  result.rmse_estimate = std::hypot(standard_error(samples.variance), result.reading_error);
   const Stopwatch watch;
   IlluminationGrid grid = unlit_grid(texels_, samples.channels);
   const auto channels = std::size_t(samples.channels);
@@ -208,6 +220,9 @@ SampleSet KeptRays::trace_and_solve(const Scene& scene, const Run& run, BakeResu
   result.seconds["trace"] = trace_seconds_;
   result.counters = links_->counters();
   add(result.counters, solution.counters);
+  if (judge_ != nullptr) add(result.counters, judge_->counters());
+  result.reading_error = reading_error(solution.samples);
+  result.settings = settings_;
   result.least_rays = result.most_rays = std::uint32_t(settings_.trace.rays);
   if (const auto rays = links_->rays(); !rays.empty()) {
     const auto [least, most] = std::minmax_element(rays.begin(), rays.end());

@@ -59,11 +59,14 @@ class ByNeed {
     trace_wanted();
     TraceSettings judged = settings_.trace;
     judged.rays = settings_.target_rmse < 0.012 ? 128 : 32;
-    const HeldOut held_out(volume_, scene_, texels_, sites_, judged, run_);
+    std::vector<std::size_t> drawn = held_out_texels(texels_, sites_, run_);
+    const Sites some = sites_.make(drawn);
+    const HeldOut held_out(volume_, scene_, some, std::move(drawn), judged, run_);
     int stalled = 0;
     for (int round = 0;; ++round) {
       solve(result);
-      const HeldOut::SquaredError found = held_out.squared_error(light_);
+      HeldOut::SquaredError found = held_out.squared_error(light_);
+      found.mean = std::max(found.mean, found.standard_error);  // few texels can agree by chance
       const double before = std::exchange(squared_error_, found.mean);
       // Not by luck: of many rounds one is the first whose figure is low by chance.
       const bool reached = found.mean + found.standard_error <= settings_.target_rmse * settings_.target_rmse;
@@ -262,7 +265,7 @@ class ByNeed {
 std::string why_not(const BakeSettings& settings, const Scene& scene) {
   if (!(settings.target_rmse > 0.0)) return "no error is asked for (target_rmse)";
   if (settings.target_seconds > 0.0) return "a time is given; allowed is an error alone";
-  if (settings.trace.bounces != 0 && settings.bounce_method != BounceMethod::kIterated)
+  if (settings.trace.bounces != 0 && !iterates(settings))
     return "reflections are followed as paths; allowed is to iterate";
   if (!scene.lights.empty()) return "the scene has light sources";
   if (std::holds_alternative<ImageEnvironment>(scene.environment)) return "the environment is an image";

@@ -31,12 +31,6 @@ std::optional<Scene> scene_of(const LightFile& light) {
   return parse_scene(json.dump(), "", "isolux.scene of the light");
 }
 
-/// `settings` with how reflections were found: iterations leave sweeps.
-BakeSettings as_done(BakeSettings settings, const BakeResult& result) {
-  if (settings.trace.bounces != 0 && result.sweeps == 0) settings.bounce_method = BounceMethod::kPaths;
-  return settings;
-}
-
 }  // namespace
 
 std::string settings_to_json(const BakeSettings& settings, const Run& run) {
@@ -54,7 +48,7 @@ std::string settings_to_json(const BakeSettings& settings, const Run& run) {
   } else {
     json["bounces"] = settings.trace.bounces;
   }
-  json["bounce_method"] = settings.bounce_method == BounceMethod::kIterated ? "iterated" : "paths";
+  json["bounce_method"] = iterates(settings) ? "iterated" : "paths";
   json["gradient"] = settings.trace.gradient == GradientKind::kCell ? "cell" : "central_differences";
   if (settings.samples != 0) json["samples"] = settings.samples;
   if (settings.texels) json["texels"] = {settings.texels->x, settings.texels->y, settings.texels->z};
@@ -62,14 +56,13 @@ std::string settings_to_json(const BakeSettings& settings, const Run& run) {
   return json.dump();
 }
 
-LightFile make_light_file(BakeResult result, const Volume& volume, const Scene& scene, const BakeSettings& settings,
-                          const Run& run) {
-  const ValueRange range = settings.isovalues.value_or(value_range(volume));
+LightFile make_light_file(BakeResult result, const Volume& volume, const Scene& scene, const Run& run) {
+  const ValueRange range = result.settings.isovalues.value_or(value_range(volume));
   LightFile light;
   light.metadata = {{"isolux.version", kVersion},
                     {"isolux.quantity", kQuantity},
                     {"isolux.scene", scene_to_json(scene)},
-                    {"isolux.settings", settings_to_json(as_done(settings, result), run)},
+                    {"isolux.settings", settings_to_json(result.settings, run)},
                     {"isolux.volume_sha256", volume_sha256(volume)},
                     {"isolux.iso_range", fmt::format("{}:{}", range.low, range.high)}};
   if (!std::isnan(result.rmse_estimate))
@@ -79,14 +72,13 @@ LightFile make_light_file(BakeResult result, const Volume& volume, const Scene& 
   return light;
 }
 
-LightFile make_error_file(const BakeResult& result, const Volume& volume, const Scene& scene,
-                          const BakeSettings& settings, const Run& run) {
+LightFile make_error_file(const BakeResult& result, const Volume& volume, const Scene& scene, const Run& run) {
   if (!result.error) throw InvalidInput("the bake was not asked for a grid of errors");
   LightFile file;
   file.metadata = {{"isolux.version", kVersion},
                    {"isolux.quantity", "standard error of irradiance/pi"},
                    {"isolux.scene", scene_to_json(scene)},
-                   {"isolux.settings", settings_to_json(as_done(settings, result), run)},
+                   {"isolux.settings", settings_to_json(result.settings, run)},
                    {"isolux.volume_sha256", volume_sha256(volume)}};
   file.grid = *result.error;
   file.inner = result.inner_error;

@@ -149,7 +149,7 @@ void append_samples(SampleSet& all, const SampleSet& more) {
 BakeResult bake_scattered_by_need(const Volume& volume, const Scene& scene, const BakeSettings& settings,
                                   const Stages& stages, const Run& run) {
   if (has_target(settings)) throw InvalidInput("sites by need: a number of rays is allowed, not an error or a time");
-  if (settings.bounce_method == BounceMethod::kIterated && settings.trace.bounces != 0)
+  if (iterates(settings) && settings.trace.bounces != 0)
     throw InvalidInput("scattered sites by need: reflections are followed by paths, not iterated");
   const auto resampler = stages.resamplers.create(settings.resampler.name, settings.resampler.settings);
   const auto tracer = stages.tracers.create(settings.tracer.name, settings.tracer.settings);

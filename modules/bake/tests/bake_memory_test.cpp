@@ -59,7 +59,7 @@ TEST(BakeMemory, IsLittleBesideVolumeAndLightWherePartsAreLit) {
 }
 
 TEST(BakeMemory, OfAllBouncesIsThatOfLinksAndAFewFloatsATexel) {
-  const Volume volume = read_volume("gen:gyroid:48");
+  const Volume volume = read_volume("gen:gyroid:64");
   BakeSettings settings;
   settings.trace.rays = 16;
   const std::size_t before = bytes_held;

@@ -126,6 +126,76 @@ TEST(KeptRays, EstimateTheErrorOfAllTexels) {
   }
 }
 
+TEST(KeptRays, EstimateWhatReadingReflectionsAddsToTheNoise) {
+  // Of these volumes texels say little of the light between them, whatever the number of rays.
+  for (const char* name : {"gen:noise:12", "gen:gyroid:15"}) {
+    SCOPED_TRACE(name);
+    const Volume volume = read_volume(name);
+    BakeSettings settings;
+    settings.trace.rays = 1024;
+    settings.bounce_method = BounceMethod::kPaths;
+    isolux::Run other;
+    other.seed = 2;
+    const IlluminationGrid reference = bake(volume, white(0.8f), settings, builtin_stages(), other).light;
+    for (const bool has_target : {false, true}) {
+      BakeSettings iterated;
+      iterated.trace.rays = 128;
+      iterated.target_rmse = has_target ? 0.012 : 0.0;
+      iterated.bounce_method = BounceMethod::kIterated;
+      const BakeResult result = bake(volume, white(0.8f), iterated, builtin_stages(), isolux::Run{});
+      double squares = 0.0;
+      for (std::size_t i = 0; i < reference.values.size(); ++i)
+        squares += std::pow(double(result.light.values[i]) - double(reference.values[i]), 2.0);
+      const double found = std::sqrt(squares / double(reference.values.size()));
+      EXPECT_GT(result.reading_error, 0.5 * found);
+      EXPECT_LT(found, 1.3 * result.rmse_estimate);
+      EXPECT_GT(found, result.rmse_estimate / 1.3);
+    }
+  }
+}
+
+TEST(KeptRays, AreNotSpentOnWhatTheyCannotTakeAway) {
+  const Volume volume = read_volume("gen:noise:12");
+  BakeSettings settings = towards(0.01, kAllBounces);
+  settings.bounce_method = BounceMethod::kIterated;
+  const BakeResult result = bake(volume, white(0.8f), settings, builtin_stages(), isolux::Run{});
+  EXPECT_GT(result.rmse_estimate, 0.02);
+  const double noise = std::sqrt(std::pow(result.rmse_estimate, 2.0) - std::pow(result.reading_error, 2.0));
+  EXPECT_LE(noise, 0.01);
+  EXPECT_GT(noise, 0.005);
+}
+
+TEST(KeptRays, GiveWayToPathsWhereTheErrorAskedIsOutOfReach) {
+  const Volume volume = read_volume("gen:noise:12");
+  const BakeResult result = bake(volume, white(0.8f), towards(0.02, kAllBounces), builtin_stages(), isolux::Run{});
+  EXPECT_EQ(result.skipped.count("reading_beyond_error"), 1u);
+  EXPECT_EQ(result.settings.bounce_method, BounceMethod::kPaths);
+  EXPECT_EQ(result.sweeps, 0);
+  EXPECT_LE(result.rmse_estimate, 0.02);
+  BakeSettings many;
+  many.trace.rays = 1024;
+  many.bounce_method = BounceMethod::kPaths;
+  isolux::Run other;
+  other.seed = 2;
+  const IlluminationGrid reference = bake(volume, white(0.8f), many, builtin_stages(), other).light;
+  double squares = 0.0;
+  for (std::size_t i = 0; i < reference.values.size(); ++i)
+    squares += std::pow(double(result.light.values[i]) - double(reference.values[i]), 2.0);
+  EXPECT_LT(std::sqrt(squares / double(reference.values.size())), 1.3 * result.rmse_estimate);
+  // Lamps' light is not kept, the rays of all sites are counted out: likewise.
+  Scene sunny = white(0.8f);
+  sunny.lights = {SunLight{.direction = {0.0f, 0.6f, 0.8f}}};
+  const BakeResult sun = bake(volume, sunny, towards(0.02, kAllBounces), builtin_stages(), isolux::Run{});
+  EXPECT_EQ(sun.skipped.count("reading_beyond_error"), 1u);
+  EXPECT_LE(sun.rmse_estimate, 0.023);
+  EXPECT_EQ(sun.sites + sun.skipped.at("sites_flat"), sun.light.lattice.count());
+  // Where it is in reach there is no need.
+  const BakeResult smooth =
+      bake(read_volume("gen:two-spheres:20"), white(0.8f), towards(0.02, kAllBounces), builtin_stages(), isolux::Run{});
+  EXPECT_EQ(smooth.settings.bounce_method, BounceMethod::kIterated);
+  EXPECT_LE(smooth.rmse_estimate, 0.02);
+}
+
 TEST(KeptRays, SpendRaysWhereTheErrorIs) {
   const Volume volume = read_volume("gen:two-spheres:25");
   const BakeResult result = bake(volume, white(0.8f), towards(0.01, 0), builtin_stages(), isolux::Run{});
@@ -190,6 +260,7 @@ TEST(KeptRays, EndWhereMemoryDoes) {
   const BakeResult none = bake(volume, half_sky(), settings, builtin_stages(), isolux::Run{});
   EXPECT_FALSE(none.skipped.contains("links_beyond_memory"));
   EXPECT_EQ(none.most_rays, 64u);
+  EXPECT_EQ(none.sites + none.skipped.at("sites_flat"), kSites);
   settings = {};
   // Towards an error rays cannot be doubled then, but they can still be counted out beforehand.
   settings.most_link_bytes = 4 * kSites * 15;

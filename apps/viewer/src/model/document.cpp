@@ -36,7 +36,7 @@ LightFile bake_draft(const Volume& volume, const Scene& scene, const Stages& sta
   BakeSettings settings;
   settings.trace.rays = 16;
   settings.texels = draft_texels(volume.lattice().size, 3e5);
-  return make_light_file(bake(volume, scene, settings, stages, run), volume, scene, settings, run);
+  return make_light_file(bake(volume, scene, settings, stages, run), volume, scene, run);
 }
 
 PointLight trace_surface(const Document& document, const Scene& scene, std::span<const Vec3f> positions,

@@ -25,11 +25,13 @@ enum class TexelLattice {
 /// How reflected light is found.
 enum class BounceMethod {
   kDefault,   ///< kIterated for the resamplers direct and fit unless a tracer is named or scattered
-              ///< sites are drawn by need, else kPaths
+              ///< sites are drawn by need, else kPaths; where an error alone is asked kIteratedOrPaths for kIterated
   kIterated,  ///< rays are traced once and their hits kept; light is read there from the last iterate of the grid
               ///< (LightLinks; of scattered sites: their means around the texels): several times cheaper, with the
               ///< grid's own error as a small bias; does not use the tracer
-  kPaths      ///< the tracer follows every path to its end: unbiased
+  kPaths,     ///< the tracer follows every path to its end: unbiased
+  kIteratedOrPaths  ///< kIterated, unless target_rmse is asked and reading reflections from texels alone is nearly as
+                    ///< wrong (BakeResult::reading_error): kPaths then, BakeResult::skipped tells
 };
 
 /// Which sites are traced.
@@ -84,20 +86,25 @@ struct BakeResult {
   std::optional<IlluminationGrid> error;        ///< estimated standard error of e at the texels, one channel
   std::optional<IlluminationGrid> inner_light;  ///< of the inner side, if Scene::sides asks for it
   std::optional<IlluminationGrid> inner_error;
+  BakeSettings settings;           ///< with_defaults(), bounce_method being what was done
   std::vector<SideFigures> sides;  ///< the outer and the inner one; empty if one side was lit
   TraceCounters counters;
   std::size_t sites = 0;
   int sweeps = 0;                ///< of BounceMethod::kIterated
   std::size_t unlit_texels = 0;  ///< filled from their lit neighbours
-  /// Root mean squared standard error of e over the sites, or error at texels held out, biases included
-  /// (TexelSites::kNeeded); NaN if one ray a site says nothing of it.
+  /// Root mean squared error of e over the sites: the standard error of their rays and reading_error together, or the
+  /// error at texels held out (TexelSites::kNeeded); NaN if one ray a site says nothing of it.
   double rmse_estimate = 0.0;
+  /// What reading reflections from texels adds to that (kIterated; rms, 0 where it is lost in the noise): no ray takes
+  /// it away, more texels or kPaths do.
+  double reading_error = 0.0;
   std::uint32_t least_rays = 0;  ///< a site
   std::uint32_t most_rays = 0;
   std::size_t link_bytes = 0;  ///< memory of kept rays
   /// What was known without tracing, by reason, of sites at texels: sites_flat (no gradient, hence no normal),
   /// sites_outside_iso_range, texels_predicted. And links_beyond_memory, rays that were not kept
-  /// (BakeSettings::most_link_bytes); rounds_beyond_memory, 1 where target_rmse was not reached for that.
+  /// (BakeSettings::most_link_bytes); rounds_beyond_memory, 1 where target_rmse was not reached for that;
+  /// reading_beyond_error, 1 where reflections were followed by paths to reach it (kIteratedOrPaths).
   std::map<std::string, std::uint64_t> skipped;
   std::map<std::string, double> seconds;  ///< by stage: sites, trace, bounces (of kIterated), resample
 };
@@ -110,6 +117,10 @@ struct BakeResult {
 /// The same for a volume: what the fit tells of a texel and how many sites it wants then goes by settings.texels as it
 /// goes by texels_a_cell.
 [[nodiscard]] BakeSettings with_defaults(BakeSettings settings, const Lattice& volume, const Stages& stages);
+/// Whether reflections are iterated, if reading them allows it.
+[[nodiscard]] inline bool iterates(const BakeSettings& settings) {
+  return settings.bounce_method == BounceMethod::kIterated || settings.bounce_method == BounceMethod::kIteratedOrPaths;
+}
 
 /// Lights all level sets of a volume at once, with_defaults(). The same bits for any number of threads. Where
 /// scene.sides is kBoth, each side's light is bit by bit that of a bake of scene_of_side(); a time is shared,

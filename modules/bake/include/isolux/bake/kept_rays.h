@@ -12,6 +12,7 @@
 
 namespace isolux {
 
+class ReadingError;
 class TexelPlaces;
 
 /// A bake whose rays are kept: what bake() uses for BounceMethod::kIterated, and a way to light the same volume again
@@ -26,13 +27,18 @@ class KeptRays {
   /// The same from sites that are found. \pre with_defaults(settings)
   KeptRays(const Volume& volume, const Scene& scene, const BakeSettings& settings, FoundSites found,
            const Stages& stages, const Run& run);
+  KeptRays(const KeptRays&) = delete;
+  KeptRays& operator=(const KeptRays&) = delete;
+  ~KeptRays();
 
   /// The light of a scene. Rays are traced only for light sources, and where settings.target_rmse or
   /// settings.target_seconds (counted from when sites were found) want more of them than there are. A second call
   /// starts from the first one's light. BakeResult::counters are those of all rays so far. \throw as bake();
   /// InvalidInput if the scene's outer side is another one
   [[nodiscard]] BakeResult light(const Scene& scene, const Run& run);
-  /// The same, where no other light is wanted: what is kept is let go before the texels are made.
+  /// The same, where no other light is wanted: what is kept is let go before the texels are made. Some sites are
+  /// traced by paths besides, so that the error is known with what reading reflections from texels adds to it
+  /// (BakeResult::reading_error); light() leaves that at 0.
   [[nodiscard]] BakeResult last_light(const Scene& scene, const Run& run) &&;
 
   [[nodiscard]] std::uint64_t rays() const { return links_->counters().rays; }
@@ -52,6 +58,8 @@ class KeptRays {
   [[nodiscard]] IlluminationGrid between_reflections(const SampleSet& samples, const Run& run);
   /// The sites that should get more rays; none if it is enough.
   [[nodiscard]] std::vector<std::uint32_t> wanting(const Solution& solution, double solve_seconds) const;
+  /// BakeResult::reading_error, as far as it is judged.
+  [[nodiscard]] double reading_error(const SampleSet& samples) const;
 
   const Volume& volume_;
   Stopwatch since_;
@@ -66,6 +74,7 @@ class KeptRays {
   std::size_t ends_one_of_ = 1;      ///< SolveSettings
   double trace_seconds_ = 0.0;
   std::vector<float> last_;  ///< e of the last solution
+  std::unique_ptr<const ReadingError> judge_;
 };
 
 }  // namespace isolux

@@ -9,15 +9,14 @@
 namespace isolux {
 
 /// The bake's result as a file: grid and the key/value pairs isolux.version, .quantity, .scene, .settings,
-/// .volume_sha256, .iso_range and .rmse_estimate.
-[[nodiscard]] LightFile make_light_file(BakeResult result, const Volume& volume, const Scene& scene,
-                                        const BakeSettings& settings, const Run& run);
+/// .volume_sha256, .iso_range and .rmse_estimate. `volume`, `scene` and `run` are those of the bake.
+[[nodiscard]] LightFile make_light_file(BakeResult result, const Volume& volume, const Scene& scene, const Run& run);
 
 /// BakeResult::error as a file. \throw InvalidInput if there is none
 [[nodiscard]] LightFile make_error_file(const BakeResult& result, const Volume& volume, const Scene& scene,
-                                        const BakeSettings& settings, const Run& run);
+                                        const Run& run);
 
-/// The settings as one line of JSON.
+/// The settings as one line of JSON, with names where with_defaults() gave them.
 [[nodiscard]] std::string settings_to_json(const BakeSettings& settings, const Run& run);
 
 /// \throw InvalidInput unless the light was baked for this volume; it names both.
