@@ -44,7 +44,7 @@ template <class Value>
 typename TrilinearFieldOf<Value>::Place TrilinearFieldOf<Value>::place(const Vec3& index) const {
   Place p;
   for (int a = 0; a < 3; ++a) {
-    const double x = std::clamp(index[a], 0.0, double(lattice_.size[a] - 1));
+    const double x = within_axis(index[a], lattice_.size[a]);
     p.cell[a] = std::min(int(x), lattice_.size[a] - 2);
     p.fraction[a] = x - p.cell[a];
   }

@@ -1,15 +1,30 @@
+#include <fmt/format.h>
+#include <isolux/core/error.h>
 #include <isolux/core/illumination_grid.h>
 
 #include <algorithm>
 
 namespace isolux {
 
+void require_complete(const IlluminationGrid& light) {
+  const Index3& size = light.lattice.size;
+  if (size.x < 1 || size.y < 1 || size.z < 1)
+    throw InvalidInput(fmt::format("a light of {}x{}x{} texels: allowed is 1 and more", size.x, size.y, size.z));
+  if (light.channels != 1 && light.channels != 3)
+    throw InvalidInput(fmt::format("a light of {} channels: allowed are 1 and 3", light.channels));
+  if (light.values.size() != light.lattice.count() * std::size_t(light.channels)) {
+    throw InvalidInput(fmt::format("{} values for a light of {}x{}x{} texels and {} channels", light.values.size(),
+                                   size.x, size.y, size.z, light.channels));
+  }
+  require_spanning(light.lattice.frame, "a light");
+}
+
 Vec3f IlluminationGrid::at_index(const Vec3& texel_index) const {
   int low[3];
   int step[3];
   double f[3];
   for (int a = 0; a < 3; ++a) {
-    const double x = std::clamp(texel_index[a], 0.0, double(lattice.size[a] - 1));
+    const double x = within_axis(texel_index[a], lattice.size[a]);
     low[a] = std::min(int(x), std::max(lattice.size[a] - 2, 0));
     step[a] = lattice.size[a] > 1 ? 1 : 0;
     f[a] = x - low[a];

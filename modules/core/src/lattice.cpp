@@ -2,6 +2,7 @@
 #include <isolux/core/error.h>
 #include <isolux/core/lattice.h>
 
+#include <cmath>
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 
@@ -12,6 +13,25 @@ Vec3 IndexToWorld::index(const Vec3& world) const { return glm::inverse(axes) * 
 Mat3 IndexToWorld::gradient_to_world() const { return glm::transpose(glm::inverse(axes)); }
 
 Vec3 IndexToWorld::spacing() const { return {glm::length(axes[0]), glm::length(axes[1]), glm::length(axes[2])}; }
+
+void require_spanning(const IndexToWorld& frame, std::string_view what) {
+  constexpr double kLeastVolume = 1e-9;  // of axes of length 1
+  const Vec3 lengths = frame.spacing();
+  const Mat3 unit(frame.axes[0] / lengths.x, frame.axes[1] / lengths.y, frame.axes[2] / lengths.z);
+  const bool has_place = std::isfinite(frame.origin.x + frame.origin.y + frame.origin.z);
+  if (has_place && std::isnormal(glm::determinant(frame.axes)) && std::fabs(glm::determinant(unit)) > kLeastVolume)
+    return;
+  const auto text = [](const Vec3& v) { return fmt::format("({}, {}, {})", v.x, v.y, v.z); };
+  throw InvalidInput(fmt::format("{}: axes {}, {} and {} from origin {} span no volume", what, text(frame.axes[0]),
+                                 text(frame.axes[1]), text(frame.axes[2]), text(frame.origin)));
+}
+
+void require_values(const Lattice& lattice, std::size_t values) {
+  const bool is_size = lattice.size.x >= 0 && lattice.size.y >= 0 && lattice.size.z >= 0;
+  if (is_size && values == lattice.count()) return;
+  throw InvalidInput(fmt::format("{} values for a lattice of {}x{}x{} points: one a point is wanted", values,
+                                 lattice.size.x, lattice.size.y, lattice.size.z));
+}
 
 Lattice cell_lattice(const Lattice& volume, Index3 texels) {
   Lattice result;

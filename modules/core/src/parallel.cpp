@@ -70,7 +70,10 @@ Run part_of(const Run& run, double begin, double end) {
   return part;
 }
 
-std::size_t block_count(std::size_t count, std::size_t block_size) { return (count + block_size - 1) / block_size; }
+std::size_t block_count(std::size_t count, std::size_t block_size) {
+  if (block_size == 0) throw InvalidInput("blocks of 0 items: allowed is 1 and more");
+  return (count + block_size - 1) / block_size;
+}
 
 int thread_count(const Run& run) { return run.threads > 0 ? run.threads : tbb::info::default_concurrency(); }
 

@@ -113,6 +113,7 @@ void require_usable(const VolumeView& volume) {
     throw InvalidInput(
         fmt::format("{}: {}x{}x{} grid points; every axis needs at least 2", volume.name(), size.x, size.y, size.z));
   }
+  require_spanning(volume.lattice().frame, volume.name());
   if (const auto* floats = std::get_if<std::span<const float>>(&volume.voxels()))
     require_finite(volume.name(), size, *floats);
 }

@@ -94,7 +94,7 @@ template <class Value>
 typename HighOrderGradient<Value>::Weights HighOrderGradient<Value>::weights(double x, int axis,
                                                                              const Stencil& stencil) const {
   const int size = size_[axis];
-  x = std::clamp(x, 0.0, size - 1.0);
+  x = within_axis(x, size);
   const double nearest = std::round(x);
   const bool on_grid = std::fabs(x - nearest) <= tolerance_;
   if (on_grid) x = nearest;

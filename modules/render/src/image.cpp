@@ -29,6 +29,10 @@ void require_png_size(int width, int height) {
 
 void write_png(const Image& image, const std::string& path) {
   require_png_size(image.width, image.height);
+  if (image.width < 1 || image.height < 1 ||
+      image.pixels.size() != std::size_t(image.width) * std::size_t(image.height))
+    throw InvalidInput(
+        fmt::format("{}: {} pixels for a picture of {}x{}", path, image.pixels.size(), image.width, image.height));
   std::vector<std::uint8_t> bytes;
   bytes.reserve(image.pixels.size() * 3);
   for (const Vec3f& p : image.pixels) {
@@ -50,6 +54,7 @@ void write_png(const Image& image, const std::string& path) {
 }
 
 Image side_by_side(const Image& left, const Image& right, int gap, const Vec3f& colour) {
+  if (gap < 0) throw InvalidInput(fmt::format("a gap of {} pixels: allowed is 0 and more", gap));
   Image both(left.width + gap + right.width, std::max(left.height, right.height), colour);
   for (int y = 0; y < left.height; ++y) std::copy_n(&left.at(0, y), left.width, &both.at(0, y));
   for (int y = 0; y < right.height; ++y) std::copy_n(&right.at(0, y), right.width, &both.at(left.width + gap, y));

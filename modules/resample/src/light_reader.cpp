@@ -29,7 +29,7 @@ struct BrickPlace {
     Index3 low;
     Vec3 f;
     for (int a = 0; a < 3; ++a) {
-      const double x = std::clamp(at[a], 0.0, double(texels[a] - 1));
+      const double x = within_axis(at[a], texels[a]);
       const int cell = std::min(int(x), std::max(texels[a] - 2, 0));
       page[a] = cell / LightBricks::kCells;
       low[a] = cell % LightBricks::kCells;
@@ -129,6 +129,7 @@ struct LightReader::Impl {
 
 LightReader::LightReader(const Volume& volume, const IlluminationGrid& light, TexelStorage storage, const Run& run) {
   const LightDetail& detail = light.detail;
+  require_complete(light);
   require_slopes(light, detail.slopes, !detail.slopes.empty());
   for (const auto& slopes : detail.normal_slopes) require_slopes(light, slopes, !detail.normal_slopes[0].empty());
   auto impl = std::make_unique<Impl>(Impl{.near_field = NearField(volume),

@@ -1,6 +1,7 @@
 #include "samples.h"
 
 #include <gmock/gmock.h>
+#include <isolux/core/random.h>
 
 #include <set>
 #include <thread>
@@ -120,6 +121,72 @@ INSTANTIATE_TEST_SUITE_P(AllFormats, ReaderContract, testing::ValuesIn(samples()
   for (char& c : name) c = std::isalnum(static_cast<unsigned char>(c)) != 0 ? c : '_';
   return name;
 });
+
+std::vector<std::string> reader_names() {
+  std::vector<std::string> names;
+  const auto registry = readers();
+  for (const auto& info : registry.backends()) {
+    if (info.unavailable.empty()) names.push_back(info.name);
+  }
+  return names;
+}
+
+/// What needs no file of the reader's own.
+class EveryReader : public testing::TestWithParam<std::string> {
+ protected:
+  /// Names of files that it reads.
+  [[nodiscard]] static std::vector<std::string> own_names() {
+    std::vector<std::string> names;
+    for (const Sample& sample : samples()) {
+      if (sample.reader == GetParam()) names.push_back(sample.name);
+    }
+    return names;
+  }
+  [[nodiscard]] std::string reading_error(const std::string& source) const {
+    return test::error_of([&] { (void)reader_->read(source, {}, {}); });
+  }
+
+  test::TemporaryFolder folder_;
+  std::unique_ptr<VolumeReader> reader_ = readers().create(GetParam());
+};
+
+TEST_P(EveryReader, HasASampleInThisFile) {
+  const bool reads_no_files = GetParam() == "analytic";
+  EXPECT_TRUE(reads_no_files || !own_names().empty())
+      << "ReaderContract tests nothing of '" << GetParam() << "': add a small file of it to samples()";
+}
+
+TEST_P(EveryReader, RefusesFilesThatAreNoneOfItsOwnNamingThem) {
+  std::vector<std::string> names = own_names();
+  names.emplace_back("other.data");
+  RandomStream random(1, 2);
+  std::string noise(999, ' ');
+  for (char& byte : noise) byte = char(random.next_bits() & 0xff);
+  for (const auto& name : names) {
+    for (const std::string& bytes : {std::string(), std::string("hello"), noise}) {
+      const auto path = folder_.write(name, bytes);
+      EXPECT_LE(reader_->claims(path, {}), 1) << "by its name at most: " << path;
+      EXPECT_THAT(reading_error(path), HasSubstr(name)) << bytes.size() << " bytes";
+    }
+  }
+}
+
+TEST_P(EveryReader, RefusesWhatIsNoFileNamingIt) {
+  std::filesystem::create_directory(folder_.file("empty-folder"));
+  for (const std::string name : {"none.nrrd", "none_2x2x2_uint8.raw", "empty-folder"}) {
+    EXPECT_LE(reader_->claims(folder_.file(name), {}), 1) << name;
+    EXPECT_THAT(reading_error(folder_.file(name)), HasSubstr(name));
+  }
+  EXPECT_EQ(reader_->claims("", {}), 0);
+  EXPECT_NE(reading_error(""), "");
+}
+
+TEST_P(EveryReader, SaysThatAFileCannotBeOpened) {
+  for (const auto& name : own_names()) EXPECT_THROW((void)reader_->read(folder_.file(name), {}, {}), IoError) << name;
+}
+
+INSTANTIATE_TEST_SUITE_P(Catalogue, EveryReader, testing::ValuesIn(reader_names()),
+                         [](const auto& backend) { return backend.param; });
 
 TEST(Readers, NameWhatCannotBeRead) {
   const test::TemporaryFolder folder;

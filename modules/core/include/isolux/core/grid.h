@@ -2,7 +2,6 @@
 
 #include <isolux/core/lattice.h>
 
-#include <cassert>
 #include <span>
 #include <utility>
 #include <vector>
@@ -14,8 +13,9 @@ template <class T>
 class GridView {
  public:
   GridView() = default;
+  /// \throw InvalidInput unless there is one value a point
   GridView(const Lattice& lattice, std::span<T> values) : lattice_(lattice), values_(values) {
-    assert(values.size() == lattice.count());
+    require_values(lattice, values.size());
   }
   [[nodiscard]] const Lattice& lattice() const { return lattice_; }
   [[nodiscard]] Index3 size() const { return lattice_.size; }
@@ -33,8 +33,9 @@ class Grid {
  public:
   Grid() = default;
   explicit Grid(const Lattice& lattice, T value = T{}) : lattice_(lattice), values_(lattice.count(), value) {}
+  /// \throw InvalidInput unless there is one value a point
   Grid(const Lattice& lattice, std::vector<T> values) : lattice_(lattice), values_(std::move(values)) {
-    assert(values_.size() == lattice.count());
+    require_values(lattice, values_.size());
   }
   [[nodiscard]] const Lattice& lattice() const { return lattice_; }
   [[nodiscard]] Index3 size() const { return lattice_.size; }

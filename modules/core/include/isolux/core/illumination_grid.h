@@ -53,10 +53,13 @@ struct IlluminationGrid {
       : lattice(texels), channels(channel_count), values(texels.count() * std::size_t(channel_count), 0.0f) {}
 
   /// e at a point in the texels' own index space (texel centres at integers), trilinear, clamped to the edge texels as
-  /// GL_CLAMP_TO_EDGE does, the detail left aside. Grey grids give the same value three times.
+  /// GL_CLAMP_TO_EDGE does, the detail left aside. Grey grids give the same value three times. \pre require_complete().
   [[nodiscard]] Vec3f at_index(const Vec3& texel_index) const;
   /// e at a world position.
   [[nodiscard]] Vec3f at_world(const Vec3& world) const;
 };
+
+/// \throw InvalidInput unless it has texels, 1 or 3 channels, a value for each, and axes that span a volume
+void require_complete(const IlluminationGrid& light);
 
 }  // namespace isolux

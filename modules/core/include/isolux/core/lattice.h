@@ -2,7 +2,9 @@
 
 #include <isolux/core/vec.h>
 
+#include <algorithm>
 #include <cstddef>
+#include <string_view>
 
 namespace isolux {
 
@@ -29,6 +31,17 @@ struct Lattice {
     return (std::size_t(k) * std::size_t(size.y) + std::size_t(j)) * std::size_t(size.x) + std::size_t(i);
   }
 };
+
+/// The place on an axis of `points` grid points within the box: clamped to 0 to points - 1; 0 for what is no number.
+[[nodiscard]] inline double within_axis(double place, int points) {
+  return place > 0.0 ? std::min(place, double(points - 1)) : 0.0;
+}
+
+/// \throw InvalidInput, naming `what`, unless the axes span a volume: numbers whose determinant is not 0, with lengths
+/// that can be told from it
+void require_spanning(const IndexToWorld& frame, std::string_view what);
+/// \throw InvalidInput unless there is one value a point
+void require_values(const Lattice& lattice, std::size_t values);
 
 /// `texels` texel centres spread over the box of `volume`: centre i of N lies at (i + 0.5)/N between the first and the
 /// last grid point. With n - 1 texels on each axis they are the cell centres. Texture coordinate = place in the box, 0

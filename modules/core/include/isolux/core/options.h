@@ -57,7 +57,7 @@ class OptionVisitor {
       choices.push_back(words[i].first);
       if (words[i].second == variable) current = i;
     }
-    variable = words[choose(name, current, choices, note)].second;
+    variable = words.at(choose(name, current, choices, note)).second;
   }
 
   [[nodiscard]] const std::vector<OptionInfo>& options() const { return options_; }

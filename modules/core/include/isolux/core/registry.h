@@ -25,7 +25,10 @@ namespace detail {
 /// Index of `name` ("" for the default) among `infos`. \throw InvalidInput naming what is allowed.
 [[nodiscard]] std::size_t find_backend(std::string_view stage, std::string_view name,
                                        std::span<const BackendInfo> infos);
-/// \throw InvalidInput if `name` is there.
+/// Index of `name`, even if this build lacks it. \throw InvalidInput naming those that are listed.
+[[nodiscard]] std::size_t find_listed(std::string_view stage, std::string_view name,
+                                      std::span<const BackendInfo> infos);
+/// \throw InvalidInput if `name` is there or empty.
 void require_new_backend(std::string_view stage, std::string_view name, std::span<const BackendInfo> infos);
 }  // namespace detail
 
@@ -36,7 +39,7 @@ template <class Stage>
 class Registry {
  public:
   /// Adds a backend: a class derived from Stage with a nested `Options` (see options.h) and a constructor taking it.
-  /// \throw InvalidInput if the name is taken.
+  /// \throw InvalidInput if the name is taken or empty.
   template <std::derived_from<Stage> Backend>
   void add(std::string name, std::string help) {
     std::string owner = std::string(Stage::kStage) + " " + name;
@@ -56,9 +59,10 @@ class Registry {
            {});
   }
 
-  /// The backend that create("") makes.
+  /// The backend that create("") makes; it may be one that this build lacks. \throw InvalidInput if none has the name
   void set_default(std::string_view name) {
-    for (auto& info : infos_) info.is_default = info.name == name;
+    const std::size_t chosen = detail::find_listed(Stage::kStage, name, infos_);
+    for (std::size_t i = 0; i < infos_.size(); ++i) infos_[i].is_default = i == chosen;
   }
 
   /// The backend called `name` ("" for the default) with these settings.
@@ -67,9 +71,12 @@ class Registry {
     return makers_[find(name)](settings);
   }
 
-  [[nodiscard]] std::span<const BackendInfo> backends() const { return infos_; }
+  /// A view, until the registry changes or goes.
+  [[nodiscard]] std::span<const BackendInfo> backends() const& { return infos_; }
+  std::span<const BackendInfo> backends() const&& = delete;
   /// What is known of the backend called `name` ("" for the default). \throw InvalidInput as create does.
-  [[nodiscard]] const BackendInfo& info(std::string_view name) const { return infos_[find(name)]; }
+  [[nodiscard]] const BackendInfo& info(std::string_view name) const& { return infos_[find(name)]; }
+  const BackendInfo& info(std::string_view name) const&& = delete;
 
  private:
   using Maker = std::function<std::unique_ptr<Stage>(const Settings&)>;

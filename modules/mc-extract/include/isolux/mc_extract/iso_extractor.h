@@ -26,6 +26,8 @@ class IsoExtractor {
   /// than in floats. \pre require_usable(volume). \throw InvalidInput if two planes of the volume have
   /// more than 2^30 grid points or an axis more than 65536.
   explicit IsoExtractor(const VolumeView& volume, const Run& run = {}, Index index = Index::kBricks);
+  explicit IsoExtractor(Volume&& volume, const Run& run = {}, Index index = Index::kBricks) = delete;
+  explicit IsoExtractor(StoredVolume&& volume, const Run& run = {}, Index index = Index::kBricks) = delete;
   ~IsoExtractor();
   IsoExtractor(IsoExtractor&& other) noexcept;
   IsoExtractor& operator=(IsoExtractor&& other) noexcept;

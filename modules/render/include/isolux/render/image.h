@@ -30,10 +30,12 @@ struct Image {
 /// For finding out before the work that write_png would refuse so many pixels. \throw InvalidInput
 void require_png_size(int width, int height);
 
-/// Writes 8-bit sRGB PNG. \throw IoError naming path; InvalidInput beyond 357 million pixels
+/// Writes 8-bit sRGB PNG. \throw IoError naming path; InvalidInput for no pixels, other numbers of them than width
+/// times height, or more than 357 million
 void write_png(const Image& image, const std::string& path);
 
-/// Two pictures of one height side by side, with a gap of `gap` pixels in `colour`.
+/// Two pictures side by side, tops aligned, with a gap of `gap` pixels in `colour`, which also fills up the lower one.
+/// \throw InvalidInput for a negative gap
 [[nodiscard]] Image side_by_side(const Image& left, const Image& right, int gap, const Vec3f& colour);
 
 }  // namespace isolux

@@ -27,14 +27,18 @@ enum class TexelStorage {
 class LightReader {
  public:
   /// One pass over the grid; where it has near-field terms and TexelLight::kOwn, some tenths of a microsecond a texel
-  /// on all threads of `run`. \throw InvalidInput if the detail does not match the grid; Cancelled
+  /// on all threads of `run`. \pre require_usable(volume). \throw InvalidInput if the grid is not complete or its
+  /// detail does not match; Cancelled
   LightReader(const Volume& volume, const IlluminationGrid& light, TexelStorage storage = TexelStorage::kDense,
               const Run& run = {});
+  LightReader(Volume&& volume, const IlluminationGrid& light, TexelStorage storage = TexelStorage::kDense,
+              const Run& run = {}) = delete;  ///< it would not outlive this
   ~LightReader();
   LightReader(LightReader&&) noexcept;
   LightReader& operator=(LightReader&&) noexcept;
 
-  /// e at a point of the volume's index space on the level set of its own value; grey grids give it three times.
+  /// e at a point of the volume's index space on the level set of its own value; grey grids give it three times. Points
+  /// outside the box are read at its nearest point.
   [[nodiscard]] Vec3f at_index(const Vec3& index) const;
   /// The same with the isovalue known, as on the vertices of a mesh.
   [[nodiscard]] Vec3f at_index(const Vec3& index, double isovalue) const;
