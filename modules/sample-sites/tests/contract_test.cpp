@@ -13,7 +13,8 @@ namespace {
 std::vector<std::string> backend_names() {
   std::vector<std::string> names;
   const auto registry = samplers();
-  for (const auto& info : registry.backends()) names.push_back(info.name);
+  for (const auto& info : registry.backends())
+    if (info.unavailable.empty()) names.push_back(info.name);
   return names;
 }
 
