@@ -1,11 +1,13 @@
-# The package as others see it: everything installed, moved to another folder, and a program outside the tree built and run on it.
+# The package as others see it: everything installed, moved to another folder, and a program outside the tree built and run on it, without
+# the packages of which only headers are used.
 set(prefix ${BUILD}/consumer/moved/prefix)
 file(REMOVE_RECURSE ${BUILD}/consumer)
 execute_process(COMMAND ${CMAKE_COMMAND} --install ${BUILD} --prefix ${BUILD}/consumer/prefix OUTPUT_QUIET COMMAND_ERROR_IS_FATAL ANY)
 file(MAKE_DIRECTORY ${BUILD}/consumer/moved)
 file(RENAME ${BUILD}/consumer/prefix ${prefix})
 execute_process(COMMAND ${CMAKE_COMMAND} -S ${SOURCE} -B ${BUILD}/consumer/build -G ${GENERATOR} -D CMAKE_CXX_COMPILER=${CXX}
-                -D CMAKE_PREFIX_PATH=${prefix} -D CMAKE_BUILD_TYPE=Release OUTPUT_QUIET COMMAND_ERROR_IS_FATAL ANY)
+                -D CMAKE_PREFIX_PATH=${prefix} -D CMAKE_BUILD_TYPE=Release
+                -D CMAKE_DISABLE_FIND_PACKAGE_CGAL=ON -D CMAKE_DISABLE_FIND_PACKAGE_nlohmann_json=ON OUTPUT_QUIET COMMAND_ERROR_IS_FATAL ANY)
 execute_process(COMMAND ${CMAKE_COMMAND} --build ${BUILD}/consumer/build OUTPUT_QUIET COMMAND_ERROR_IS_FATAL ANY)
 
 # A file of a format whose library is loaded when it is first needed, where it was built in.
@@ -27,3 +29,8 @@ if(loaded)
     message(FATAL_ERROR "without its library: exit status ${status}, ${says}")
   endif()
 endif()
+
+file(GLOB_RECURSE module ${prefix}/*isolux-raytrace_flat-targets.cmake)
+file(REMOVE ${module})
+execute_process(COMMAND ${CMAKE_COMMAND} -S ${SOURCE}/parts -B ${BUILD}/consumer/parts -G ${GENERATOR} -D CMAKE_CXX_COMPILER=${CXX}
+                -D CMAKE_PREFIX_PATH=${prefix} OUTPUT_QUIET COMMAND_ERROR_IS_FATAL ANY)

@@ -1,20 +1,21 @@
 # Libraries that a backend loads when it is first needed, and how programs find them. Part of IsoluxModule.cmake.
-# Libraries that are loaded when first needed: where they are installed, how programs installed beside them get there, and the folder that
-# the same way leads to from the build tree's apps.
+# Where they are installed, how programs installed beside them get there, and the folder that the same way leads to from the build tree's apps.
 set(ISOLUX_LOADED_DIR ${CMAKE_INSTALL_LIBDIR}/isolux)
 file(RELATIVE_PATH ISOLUX_TO_LOADED ${CMAKE_INSTALL_FULL_BINDIR} ${CMAKE_INSTALL_FULL_LIBDIR}/isolux)
-get_filename_component(ISOLUX_LOADED_BUILD_DIR ${CMAKE_BINARY_DIR}/apps/any/${ISOLUX_TO_LOADED} ABSOLUTE)
+get_filename_component(ISOLUX_LOADED_BUILD_DIR ${ISOLUX_BUILD_ROOT}/apps/any/${ISOLUX_TO_LOADED} ABSOLUTE)
 
 # A program that is installed. It finds libraries that are loaded by where it is itself, so that an installation can be moved.
 function(isolux_install_program target)
   set(path $ORIGIN/${ISOLUX_TO_LOADED} ${CMAKE_INSTALL_RPATH})
   set_target_properties(${target} PROPERTIES INSTALL_RPATH "${path}")
-  install(TARGETS ${target} COMPONENT isolux)
+  if(ISOLUX_INSTALL)
+    install(TARGETS ${target} COMPONENT isolux)
+  endif()
 endfunction()
 
 # The shared library of src/loaded/KEY, which the backend KEY loads by its file name, ISOLUX_KEY_LIBRARY, when it is first needed: programs
-# begin without its package. It is found by the program's RUNPATH: isolux_flags and isolux_install_program
-# give it to ours, the module's link options to others'.
+# begin without its package. It is found by the program's RUNPATH: isolux_flags and isolux_install_program give it to ours, the module to
+# others'. It is installed with ISOLUX_INSTALL off too: it is a part of the programs that link the module.
 function(_isolux_loaded_library name id key package)
   set(library isolux_${id}_${key})
   file(GLOB sources CONFIGURE_DEPENDS src/loaded/${key}/*.cpp)
@@ -38,9 +39,8 @@ function(_isolux_loaded_library name id key package)
     set(installed $<INSTALL_PREFIX>/${installed})
   endif()
   target_link_options(isolux_${id} INTERFACE "$<INSTALL_INTERFACE:LINKER:-rpath,${installed}>")
-  cmake_path(IS_PREFIX ISOLUX_ROOT ${CMAKE_SOURCE_DIR} is_ours)
-  if(NOT is_ours)  # a part of somebody's project, whose programs know nothing of isolux_flags
-    target_link_options(isolux_${id} INTERFACE "$<BUILD_INTERFACE:LINKER:-rpath,${ISOLUX_LOADED_BUILD_DIR}>")
-  endif()
+  # CMake puts folders to link from into the RUNPATH of programs in the build tree; where they are installed it gives them their own
+  # INSTALL_RPATH instead, which somebody's project sets (README.md).
+  target_link_directories(isolux_${id} INTERFACE $<BUILD_INTERFACE:${ISOLUX_LOADED_BUILD_DIR}>)
   install(TARGETS ${library} LIBRARY DESTINATION ${ISOLUX_LOADED_DIR} COMPONENT ${name})
 endfunction()

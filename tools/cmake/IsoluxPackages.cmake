@@ -1,9 +1,9 @@
 # Where every third-party package is found, once: isolux_find_package(NAME RESULT) sets RESULT to the targets to link, or to
 # NOTFOUND. The same file is installed with the package, so that a consumer finds what our static libraries were built on.
 include_guard(GLOBAL)
-set(CMAKE_FIND_PACKAGE_TARGETS_GLOBAL ON)
 
 function(isolux_find_package name result)
+  set(CMAKE_FIND_PACKAGE_TARGETS_GLOBAL ON)  # a module's package is linked by programs of other folders
   set(targets "")
   if(name STREQUAL "ITK")
     find_package(ITK QUIET COMPONENTS ITKCommon ITKIOImageBase ITKIONIFTI ITKIOMeta ITKIOVTK ITKIOTIFF ITKIOGDCM ITKIONRRD)
