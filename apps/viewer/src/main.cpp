@@ -8,6 +8,9 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cctype>
+#include <filesystem>
+#include <memory>
 #include <optional>
 #include <string>
 #include <tuple>
@@ -31,6 +34,14 @@ using namespace isolux;
 
 /// What X11 and the drivers take.
 constexpr int kLargestWindow = 16384;
+
+/// Without an extension it may be a pipe, as for isolux render. \throw UsageError
+void require_png(const std::string& path) {
+  std::string extension = std::filesystem::path(path).extension().string();
+  for (char& c : extension) c = char(std::tolower(static_cast<unsigned char>(c)));
+  if (!extension.empty() && extension != ".png")
+    throw UsageError(fmt::format("--screenshot: {}: pictures are written as .png", path));
+}
 
 /// The words of the command line, besides those that other commands have too.
 struct Words {
@@ -66,11 +77,12 @@ struct Words {
         ->check(CLI::IsMember({"global", "local", "both"}));
     program.add_flag("--exact-light", exact_light, "trace the light at the vertices of the surface, as key x does");
     program.add_option("--view", view, "from where, in degrees (default 30,20)")->type_name("AZIMUTH,ELEVATION");
-    program.add_option("--exposure", exposure, "stops by which the picture is made brighter")
+    program.add_option("--exposure", exposure, "stops by which the global light is made brighter")
         ->check(finite_number())
         ->type_name("STOPS");
     program
-        .add_option("--outer", outer, "the side that is outside: lower or higher values (default: what the light says)")
+        .add_option("--outer", outer,
+                    "the side that is outside: lower or higher values (default: what the light or scene says)")
         ->check(CLI::IsMember({"lower", "higher"}));
     program.add_option("--backend", backend, "extractor backend")->type_name("NAME");
     program.add_option("--set", set, "an option of the extractor")->check(key_and_value())->type_name("KEY=VALUE");
@@ -90,6 +102,7 @@ struct Words {
     const auto angles = parse_numbers("--view", view, 2);
     result.frames = frames == 0 && !screenshot.empty() ? 1 : frames;
     result.screenshot = screenshot;
+    require_png(screenshot);
     result.viewer.isovalue = isovalue;
     result.viewer.azimuth_deg = angles[0];
     result.viewer.elevation_deg = angles[1];
@@ -112,6 +125,14 @@ struct Words {
   }
 };
 
+/// The slider has no place for other isovalues.
+void warn_outside(std::optional<double> isovalue, const viewer::Document& document, const Session& session) {
+  const ValueRange range = document.histogram.range;
+  if (!isovalue || (*isovalue >= double(range.low) && *isovalue <= double(range.high))) return;
+  session.warn(fmt::format("--iso {} lies outside the values of {} ({} to {}): the nearest of these is shown",
+                           *isovalue, document.volume->name(), range.low, range.high));
+}
+
 void look(const Words& words, const viewer::AppSettings& settings, Session& session) {
   session.require_outputs(
       {{"--screenshot", words.screenshot}},
@@ -122,7 +143,9 @@ void look(const Words& words, const viewer::AppSettings& settings, Session& sess
       given ? words.volume.read_stored(session) : read_stored_volume("gen:marschner-lobb", {}, session.run);
   viewer::Document document = viewer::make_document(std::move(volume));
   if (words.light.given())
-    document.light = std::make_shared<const LightFile>(words.light.read(document.volume->floats(), session));
+    document.light =
+        viewer::known_light(std::make_shared<const LightFile>(words.light.read(document.volume->floats(), session)));
+  warn_outside(words.isovalue, document, session);
   session.timed("view", [&] { viewer::run_app(std::move(document), settings, session.stages); });
 }
 

@@ -1,6 +1,8 @@
 // The program itself under Xvfb, a display in memory; skipped where there is none.
 #include <gtest/gtest.h>
 #include <isolux/bake/light_metadata.h>
+#include <isolux/render/image.h>
+#include <isolux/render/render.h>
 #include <isolux/volume_io/light_file.h>
 #include <isolux/volume_io/read.h>
 #include <stb_image.h>
@@ -14,6 +16,7 @@
 #include <set>
 #include <sstream>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace isolux::viewer {
@@ -43,7 +46,15 @@ class IsoluxView : public testing::Test {
     const int status = std::system(command.c_str());
     return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
   }
-  int run_with_display(const std::string& arguments) const { return run(kDisplay, arguments); }
+  /// The program's own status, written down by a shell that runs it by `how`: xvfb-run has troubles of its own when it
+  /// ends.
+  int run_with_display(const std::string& arguments, const std::string& how = R"("$0" "$@")") const {
+    fs::remove(path("status"));
+    const int around = run(kDisplay + " sh -c '" + how + "; echo $? >" + path("status") + "'", arguments);
+    int status = around;
+    std::ifstream(path("status")) >> status;
+    return status;
+  }
   [[nodiscard]] std::string said() const {
     std::ifstream file(path("err"));
     std::ostringstream text;
@@ -78,7 +89,7 @@ TEST_F(IsoluxView, SaysInOneLineThatThereIsNoDisplay) {
 TEST_F(IsoluxView, RefusesAWrongCommandLineBeforeItLooksForADisplay) {
   for (const char* arguments :
        {"--no-such-option", "--size 10", "--size 100000x10", "--view 1", "--mode global", "--frames 0", "--iso nan",
-        "--exposure inf", "--backend none", "--set k", "--screenshot ''", "''"}) {
+        "--exposure inf", "--backend none", "--set k", "--screenshot ''", "--screenshot a.jpg", "''"}) {
     EXPECT_EQ(run("env -u DISPLAY", arguments), 2) << arguments;
     EXPECT_EQ(said().rfind("isolux: error: view: ", 0), 0u) << said();
   }
@@ -101,14 +112,11 @@ TEST_F(IsoluxView, WritesItsReport) {
 TEST_F(IsoluxView, EndsCleanlyWhenInterrupted) {
   if (!has_xvfb()) GTEST_SKIP() << "xvfb-run or xauth is not installed";
   for (const char* signal : {"INT", "TERM"}) {
-    // xvfb-run has troubles of its own when it ends: what matters is said within. In the background timeout would send
-    // the signal twice, to the program and to its group; the second ends it at once.
-    const std::string interrupted = std::string(" sh -c 'timeout --foreground --preserve-status -s ") + signal +
-                                    R"( 2 "$0" "$@"; echo $? >)" + path("status") + "'";
-    static_cast<void>(run(kDisplay + interrupted, "gen:sphere:8 --size 64x64"));
-    int status = 0;
-    std::ifstream(path("status")) >> status;
-    EXPECT_EQ(status, 130);
+    // In the background timeout would send the signal twice, to the program and to its group; the second ends it at
+    // once.
+    const std::string interrupted =
+        std::string("timeout --foreground --preserve-status -s ") + signal + R"( 2 "$0" "$@")";
+    EXPECT_EQ(run_with_display("gen:sphere:8 --size 64x64", interrupted), 130);
     EXPECT_EQ(said().substr(0, said().find('\n')), "isolux: error: view: interrupted");
   }
 }
@@ -181,6 +189,67 @@ TEST_F(IsoluxView, TracesExactLightAtTheVertices) {
   // Albedo .8 of 1, as an sRGB code.
   EXPECT_NEAR(middle, 231, 2);
   for (int x = 60; x <= 140; ++x) EXPECT_NEAR(exact.rgb[std::size_t(100 * 200 + x) * 3], middle, 1) << x;
+}
+
+TEST_F(IsoluxView, ShowsTheSameFrameAsRender) {
+  if (!has_xvfb()) GTEST_SKIP() << "xvfb-run or xauth is not installed";
+  const Volume volume = read_volume("gen:torus:24");
+  for (const auto& [width, height] : {std::pair{300, 120}, std::pair{120, 300}}) {
+    const std::string size = std::to_string(width) + "x" + std::to_string(height);
+    ASSERT_EQ(
+        run_with_display("gen:torus:24 --iso -0.15 --view 20,30 --size " + size + " --screenshot " + path("shown.png")),
+        0)
+        << said();
+    const Picture shown = picture("shown.png");
+    ASSERT_EQ(shown.width, width);
+    const Image expected = render(volume, orbit_camera(volume.lattice(), 20.0, 30.0, double(width) / height),
+                                  {.width = width, .height = height, .supersampling = 1, .isovalue = -0.15f},
+                                  local_shader(Vec3f(0.8f)), {});
+    int differing = 0;
+    for (int y = 0; y < height; ++y)
+      for (int x = 0; x < width; ++x) {
+        const int code = shown.rgb[(std::size_t(y) * std::size_t(width) + std::size_t(x)) * 3];
+        if (std::abs(code - int(srgb_code(expected.at(x, y).x))) > 12) ++differing;
+      }
+    // The mesh's outline is not the field's: a pixel along it.
+    EXPECT_LT(differing, (width + height) * 2);
+  }
+}
+
+TEST_F(IsoluxView, SaysThatItsIsovalueIsOutsideTheValues) {
+  if (!has_xvfb()) GTEST_SKIP() << "xvfb-run or xauth is not installed";
+  EXPECT_EQ(run_with_display("gen:sphere:8 --iso 5 --frames 1 --size 64x64"), 0);
+  EXPECT_EQ(said().rfind("isolux: warning: --iso 5 lies outside the values of gen:sphere:8", 0), 0u) << said();
+}
+
+TEST_F(IsoluxView, WritesNoPictureThatIsNotFinished) {
+  if (!has_xvfb() || std::system("command -v xdotool >/dev/null") != 0)
+    GTEST_SKIP() << "xvfb-run, xauth or xdotool is not installed";
+  // Minutes of work for one thread, closed at once.
+  const std::string closed =
+      R"((xdotool search --sync --onlyvisible --name "^isolux - " windowfocus --sync key q) >/dev/null 2>&1 & )"
+      R"("$0" "$@")";
+  EXPECT_EQ(
+      run_with_display(
+          "gen:gyroid:192 --iso 0 --threads 1 --size 64x64 --exact-light --screenshot " + path("early.png"), closed),
+      1);
+  EXPECT_NE(said().find("early.png: not written: the window was closed"), std::string::npos) << said();
+  EXPECT_FALSE(fs::exists(path("early.png")));
+}
+
+TEST_F(IsoluxView, WritesNoPictureWithoutTheExactLightAskedFor) {
+  if (!has_xvfb()) GTEST_SKIP() << "xvfb-run or xauth is not installed";
+  const Volume volume = read_volume("gen:sphere:16");
+  LightFile light;
+  light.grid = IlluminationGrid(cell_lattice(volume.lattice()), 1);
+  light.metadata["isolux.volume_sha256"] = volume_sha256(volume);
+  light.metadata["isolux.scene"] = R"({"environment":{"type":"image"}})";
+  write_light(light, path("light.nrrd"), volume.space);
+  EXPECT_EQ(run_with_display("gen:sphere:16 --exact-light --size 64x64 --light " + path("light.nrrd") +
+                             " --screenshot " + path("none.png")),
+            1);
+  EXPECT_NE(said().find("none.png: not written: the light does not tell its whole scene"), std::string::npos) << said();
+  EXPECT_FALSE(fs::exists(path("none.png")));
 }
 
 TEST_F(IsoluxView, ShowsATestFieldWithoutAVolume) {

@@ -12,7 +12,6 @@
 #include <utility>
 
 #include "model/background_task.h"
-#include "model/document.h"
 #include "model/histogram.h"
 #include "model/surface.h"
 #include "model/surface_worker.h"
@@ -177,28 +176,6 @@ TEST(BackgroundTask, HandsOverTheResultOrTheReason) {
     EXPECT_EQ(outcome->error, fails ? "no light today" : "");
     EXPECT_FALSE(worker.take().has_value());
   }
-}
-
-TEST(ExactLight, IsOneOnAConvexSurfaceWithAndWithoutABakedLight) {
-  Document document = make_document(read_stored_volume("gen:sphere:16"));
-  const std::vector<Vec3f> positions{{0.5f, 0.5f, 0.8f}, {0.3f, 0.5f, 0.5f}};
-  Scene dim;
-  dim.environment = UniformEnvironment{.radiance = Vec3f(0.5f)};
-  const Stages stages = builtin_stages();
-  for (const Vec3f& e : trace_surface(document, dim, positions, stages, {}).radiance) EXPECT_EQ(e, Vec3f(0.5f));
-  document.light = std::make_shared<const LightFile>(bake_draft(document.volume->floats(), Scene{}, stages, {}));
-  for (const Vec3f& e : trace_surface(document, dim, positions, stages, {}).radiance) {
-    EXPECT_NEAR(e.x, 1.0f, 1e-6f) << "the light's own scene counts";
-  }
-}
-
-TEST(Draft, HasAtMostSoManyTexelsInTheVolumesProportions) {
-  EXPECT_EQ(draft_texels({65, 33, 17}, 1e6), Index3(64, 32, 16)) << "one a cell where they are few";
-  const Index3 large = draft_texels({513, 513, 257}, 1e6);
-  EXPECT_LE(double(large.x) * large.y * large.z, 1e6);
-  EXPECT_GT(double(large.x) * large.y * large.z, 0.9e6);
-  EXPECT_NEAR(double(large.x) / large.z, 2.0, 0.03) << "whole texels";
-  EXPECT_EQ(draft_texels({1000001, 2, 2}, 1e3), Index3(1000000 / 10, 1, 1)) << "a factor of ten an axis";
 }
 
 }  // namespace

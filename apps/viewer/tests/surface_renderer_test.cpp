@@ -1,12 +1,16 @@
 #include "gl/surface_renderer.h"
 
 #include <gtest/gtest.h>
+#include <isolux/core/error.h>
 #include <isolux/render/image.h>
 #include <isolux/volume_io/read.h>
 
 #include <algorithm>
 #include <cstddef>
 #include <memory>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "camera/framing.h"
 #include "egl_context.h"
@@ -99,12 +103,41 @@ TEST(SurfaceRenderer, ShowsTheInnerSideInItsOwnLight) {
   renderer.set_light(white(0.5f));
   const int dim = middle_from(within);
   EXPECT_LT(dim, srgb_code(0.8f * 0.1f) + 2) << "without light of its own the inner side is dim";
-  renderer.set_inner_light(white(0.25f));
+  const IlluminationGrid quarter = white(0.25f);
+  renderer.set_light(white(0.5f), &quarter);
   EXPECT_NEAR(middle_from(within), srgb_code(0.8f * 0.25f), 1);
   EXPECT_NEAR(middle_from(outside), srgb_code(0.8f * 0.5f), 1);
   renderer.set_light(white(0.5f));
   EXPECT_EQ(middle_from(within), dim) << "another light's inner side is forgotten";
+  renderer.set_light(white(0.5f), &quarter);
+  const IlluminationGrid elsewhere(Lattice{.size = Index3(4), .frame = {.origin = Vec3(9.0), .axes = Mat3(1.0)}}, 2);
+  EXPECT_THROW(renderer.set_light(elsewhere), Error);
+  EXPECT_THROW(renderer.set_light(white(1.0f), &elsewhere), Error);
+  EXPECT_NEAR(middle_from(within), srgb_code(0.8f * 0.25f), 1) << "what cannot be shown leaves what was";
+  EXPECT_NEAR(middle_from(outside), srgb_code(0.8f * 0.5f), 1);
   EXPECT_EQ(glGetError(), GLenum(GL_NO_ERROR));
+}
+
+TEST(SurfaceRenderer, SaysThatTheVolumeIsTooLongForALightOfFewTexels) {
+  const test::EglContext context;
+  if (!context) GTEST_SKIP() << context.why();
+  const Lattice lattice{.size = {largest_texture() + 1, 2, 2}, .frame = {}};
+  Volume volume;
+  volume.values = Grid<float>(lattice, std::vector<float>(lattice.count(), 0.0f));
+  volume.values.values()[0] = 1.0f;
+  SurfaceRenderer renderer(std::make_shared<const ViewedVolume>(std::move(volume)));
+  IlluminationGrid light(cell_lattice(lattice, {8, 1, 1}), 1);
+  renderer.set_light(light);
+  light.detail.near_field = {{.step = 1.0f, .mean = 0.9f, .weight = Vec3f(0.1f)}};
+  try {
+    renderer.set_light(light);
+    FAIL() << "it needs the volume's values";
+  } catch (const InvalidInput& error) {
+    const std::string words = error.what();
+    EXPECT_NE(words.find("the volume's"), std::string::npos) << words;
+    EXPECT_NE(words.find("resampler.near_field=false"), std::string::npos) << words;
+    EXPECT_EQ(words.find("fewer texels"), std::string::npos) << words;
+  }
 }
 
 TEST(SurfaceRenderer, DrawsNothingWhereThereIsNothing) {

@@ -108,6 +108,21 @@ TEST(Trackball, ZoomsWithinBounds) {
   EXPECT_NEAR(distance(), radius * 50.0, 1e-6);
 }
 
+TEST(Trackball, KeepsWhatTheMouseDidForAPictureOfAnotherShape) {
+  Trackball trackball = make_trackball();
+  trackball.rotate({0.1, 0.2}, {-0.7, 0.4});
+  trackball.pan({0.0, 0.0}, {0.3, 0.3});
+  trackball.zoom(3.0);
+  const Camera before = trackball.camera();
+  trackball.reframe(orbit_camera(kVolume, 30.0, 20.0, 0.25));
+  const double farther = glm::length(trackball.camera().eye - before.eye);
+  EXPECT_GT(farther, 1.0) << "a narrow picture is taken from farther off";
+  expect_near(trackball.camera().forward, before.forward, kRounding);
+  expect_near(trackball.camera().eye, before.eye - farther * before.forward, kRounding);
+  trackball.reframe(orbit_camera(kVolume, 30.0, 20.0, 1.0));
+  expect_near(trackball.camera().eye, before.eye, kRounding);
+}
+
 /// The box's corners in clip space.
 std::vector<glm::dvec4> shown_corners(const Camera& camera, double aspect) {
   const Vec3 middle = box_middle(kVolume);
@@ -122,10 +137,23 @@ std::vector<glm::dvec4> shown_corners(const Camera& camera, double aspect) {
 
 TEST(Framing, ShowsTheWholeBoxAtTheStartInEveryPicture) {
   for (const double aspect : {0.3, 1.0, 2.5}) {
-    for (const glm::dvec4& p : shown_corners(make_trackball().camera(), aspect)) {
+    for (const glm::dvec4& p : shown_corners(orbit_camera(kVolume, 30.0, 20.0, aspect), aspect)) {
       EXPECT_LE(std::fabs(p.x), p.w * (1.0 + kRounding));
       EXPECT_LE(std::fabs(p.y), p.w * (1.0 + kRounding));
     }
+  }
+}
+
+TEST(Framing, ShowsWhatTheRaycasterShowsInThatPlace) {
+  for (const double aspect : {0.3, 1.0, 2.5}) {
+    const Camera camera = orbit_camera(kVolume, 30.0, 20.0, aspect);
+    const Vec3 middle = box_middle(kVolume);
+    const glm::dmat4 clip = clip_from_centred(camera, middle, box_radius(kVolume), aspect);
+    const glm::dvec2 place(-0.7 * aspect, 0.4);
+    const Vec3 seen = camera.eye + 30.0 * camera.direction(place.x, place.y);
+    const glm::dvec4 p = clip * glm::dvec4(seen - middle, 1.0);
+    EXPECT_NEAR(p.x / p.w, place.x / aspect, kRounding);
+    EXPECT_NEAR(p.y / p.w, place.y, kRounding);
   }
 }
 

@@ -3,8 +3,11 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
+#include <optional>
 #include <set>
 #include <string>
+#include <utility>
 
 #include "ui/keys.h"
 #include "ui/panes.h"
@@ -80,6 +83,20 @@ TEST(Slider, HasAPlaceForARangeOfOneValue) {
   EXPECT_EQ(slider.value(), 5.0);
 }
 
+TEST(Slider, TellsNeighbouringStepsApart) {
+  const std::array<std::pair<double, double>, 6> ranges{
+      {{0.0, 1.0}, {0.0, 255.0}, {-1024.0, 3071.0}, {1000.0, 1001.0}, {-1e-7, 1e-7}, {65535.0, 65536.0}}};
+  for (const auto& [low, high] : ranges) {
+    Slider slider(low, high, 0.5 * (low + high));
+    for (int i = 0; i < 50; ++i) {
+      const std::string before = slider.text();
+      slider.step(1.0 / 500.0);
+      EXPECT_NE(slider.text(), before) << low << " to " << high;
+    }
+  }
+  EXPECT_EQ(Slider(0.0, 255.0, 128.62501).text(), "128.63") << "no more digits than that takes";
+}
+
 TEST(Panes, CoverTheWindowWithoutGapOrOverlap) {
   for (const int width : {1, 2, 801, 1200}) {
     const auto panes = make_panes(Layout::kSideBySide, width, 600);
@@ -130,8 +147,23 @@ TEST(Text, DrawsEveryPrintableCharacterButTheSpaceWithinItsWidth) {
 }
 
 TEST(Text, ShowsWhatTheFontLacksAsQuestionMarks) {
-  EXPECT_EQ(text_boxes("\xc3\xa9\t\x7f").size(), 4 * text_boxes("?").size());
-  EXPECT_EQ(text_width("\xc3\xa9"), text_width("??"));
+  EXPECT_EQ(text_boxes("\t\x7f\xff\xc3").size(), 4 * text_boxes("?").size());
+  EXPECT_EQ(text_width("\xe8\x80\xb3\xf0\x9f\x91\x82"), text_width("??")) << "one a character";
+}
+
+TEST(Text, TakesTheAccentsOffLetters) {
+  EXPECT_EQ(wrap_text("Geh\xc3\xb6r \xc3\x89tude \xc5\xbb\xc5\x82oty a\xcc\x88", 1e9), "Gehor Etude Zloty a");
+  EXPECT_EQ(text_width("\xc3\xa9"), text_width("e"));
+}
+
+TEST(Text, WrapsBetweenWordsAndWithinThoseTooLong) {
+  EXPECT_EQ(wrap_text("a b", 1e9), "a b");
+  EXPECT_EQ(wrap_text("one two three", text_width("one two")), "one two\nthree");
+  EXPECT_EQ(wrap_text("one\ntwo", text_width("one two")), "one\ntwo");
+  EXPECT_EQ(wrap_text("abcabc", text_width("abc")), "abc\nabc");
+  EXPECT_EQ(wrap_text("ab", 0.0), "a\nb") << "never without end";
+  const std::string words = "the light is of isovalues 100 to 200, /a/path/that/is/longer/than/a/line/of/text.nrrd";
+  for (double most = 20.0; most < 400.0; most += 7.0) EXPECT_LE(text_width(wrap_text(words, most)), most);
 }
 
 TEST(Text, TakesTheLongestLineForItsWidth) { EXPECT_EQ(text_width("ab\nabcdef\nabc"), text_width("abcdef")); }
@@ -142,6 +174,15 @@ TEST(Keys, MeanOneActionEach) {
     EXPECT_TRUE(seen.insert({binding.key, binding.shift}).second) << binding.key;
     EXPECT_EQ(action_of(binding.key, binding.shift ? GLFW_MOD_SHIFT : 0), binding.action);
   }
+}
+
+TEST(Keys, KnowThreeMouseButtons) {
+  EXPECT_EQ(button_of(GLFW_MOUSE_BUTTON_LEFT, 0), MouseButton::kLeft);
+  EXPECT_EQ(button_of(GLFW_MOUSE_BUTTON_LEFT, GLFW_MOD_SHIFT), MouseButton::kMiddle);
+  EXPECT_EQ(button_of(GLFW_MOUSE_BUTTON_MIDDLE, 0), MouseButton::kMiddle);
+  EXPECT_EQ(button_of(GLFW_MOUSE_BUTTON_RIGHT, GLFW_MOD_SHIFT), MouseButton::kRight);
+  EXPECT_EQ(button_of(GLFW_MOUSE_BUTTON_4, 0), std::nullopt);
+  EXPECT_EQ(button_of(GLFW_MOUSE_BUTTON_5, 0), std::nullopt);
 }
 
 TEST(Keys, LeaveCombinationsToTheSystem) {

@@ -1,10 +1,12 @@
 #include "app/app.h"
 
+#include <fmt/format.h>
 #include <isolux/core/error.h>
 #include <isolux/render/image.h>
 #include <isolux/volume_io/atomic_file.h>
 #include <isolux/volume_io/read.h>
 
+#include <exception>
 #include <stop_token>
 #include <utility>
 
@@ -37,13 +39,14 @@ class App final : public WindowListener {
       if (settings_.frames > 0 && viewer_.settled()) {
         window_.poll_events();
       } else {
-        window_.wait_events();
+        window_.wait_events(viewer_.message_seconds_left());
       }
     }
-    if (!settings_.screenshot.empty()) save_picture(settings_.screenshot);
+    if (!settings_.screenshot.empty()) save_screenshot();
   }
 
   void on_key(int key, int modifiers) override {
+    viewer_.dismiss();
     if (const auto action = action_of(key, modifiers)) viewer_.act(*action);
     dirty_ = true;
   }
@@ -64,7 +67,7 @@ class App final : public WindowListener {
       StoredVolume volume = read_stored_volume(path, {}, settings_.viewer.run, stages_.readers);
       require_usable(volume);
       viewer_.open(make_document(std::move(volume)));
-    } catch (const Error& error) {
+    } catch (const std::exception& error) {
       viewer_.say(error.what());
     }
   }
@@ -75,23 +78,27 @@ class App final : public WindowListener {
     viewer_.draw(window_.size());
     window_.set_title(viewer_.title());
     window_.swap();
-    if (const auto path = viewer_.take_screenshot_request()) {
-      try {
-        save_picture(*path);
-        viewer_.say("wrote " + *path);
-      } catch (const Error& error) {
-        viewer_.say(error.what());
-      }
+    if (viewer_.take_screenshot_request()) {
+      viewer_.save("png", [&](const std::string& path) { write_png(picture(), path); });
       dirty_ = true;
       Window::wake();
     }
   }
 
-  /// Draws the surface alone into the hidden half of the window's picture and writes that.
-  void save_picture(const std::string& path) {
+  /// Draws the surface alone into the hidden half of the window's picture.
+  [[nodiscard]] Image picture() {
     const WindowSize size = window_.size();
     viewer_.draw_surface(size);
-    const Image image = read_pixels(size.width, size.height);
+    return read_pixels(size.width, size.height);
+  }
+
+  /// \throw Error rather than that somebody takes what was not finished for what was asked for
+  void save_screenshot() {
+    const std::string& path = settings_.screenshot;
+    if (!viewer_.settled())
+      throw Error(fmt::format("{}: not written: the window was closed before its picture was finished", path));
+    if (!viewer_.failure().empty()) throw Error(fmt::format("{}: not written: {}", path, viewer_.failure()));
+    const Image image = picture();
     write_atomically_by_name(path, [&](const std::string& temporary) { write_png(image, temporary); });
   }
 

@@ -1,17 +1,22 @@
 #include "app/viewer.h"
 
 #include <fmt/format.h>
-#include <isolux/bake/light_metadata.h>
 #include <isolux/core/error.h>
-#include <isolux/core/parallel.h>
 
 #include <algorithm>
 #include <cmath>
+#include <exception>
 #include <utility>
 
 #include "camera/framing.h"
+#include "model/saved_file.h"
 
 namespace isolux::viewer {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+}  // namespace
 
 Viewer::Viewer(Document document, const ViewerSettings& settings, const Stages& stages, std::function<void()> wake)
     : settings_(settings),
@@ -22,7 +27,13 @@ Viewer::Viewer(Document document, const ViewerSettings& settings, const Stages& 
       wants_exact_(settings.exact_light) {
   const std::optional<double> isovalue = settings.isovalue;
   start(std::move(document));
-  if (isovalue) slider_->set_value(*isovalue);
+  if (isovalue) {
+    slider_->set_value(*isovalue);
+    if (*isovalue < slider_->low() || *isovalue > slider_->high()) {
+      say(fmt::format("isovalue {} is outside the values, {} to {}: the nearest is shown", *isovalue,
+                      float(slider_->low()), float(slider_->high())));
+    }
+  }
   if (settings.layout) layout_ = *settings.layout;
   request_surface();
 }
@@ -33,26 +44,32 @@ void Viewer::open(Document document) {
 }
 
 void Viewer::start(Document document) {
+  // Before anything else changes: OpenGL may refuse.
+  auto renderer = std::make_unique<SurfaceRenderer>(document.volume);
   worker_.reset();
   bake_.reset();
   exact_.reset();
   document_ = std::move(document);
   shown_ = {};
-  message_.clear();
+  dismiss();
+  exact_failure_.clear();
+  replaced_.reset();
+  is_draft_ = false;
   const std::shared_ptr<const ViewedVolume> volume = document_.volume;
   const Lattice& lattice = volume->lattice();
-  renderer_ = std::make_unique<SurfaceRenderer>(volume);
+  renderer_ = std::move(renderer);
   layout_ = Layout::kLocal;
-  outer_ = settings_.outer.value_or(OuterSide::kLower);
+  lighted_.scene = settings_.scene.value_or(Scene{});
+  lighted_.outer = outer_side(document_, lighted_.scene, settings_.outer);
   const ValueRange range = document_.histogram.range;
   slider_ = std::make_unique<Slider>(range.low, range.high, otsu_threshold(document_.histogram));
   trackball_ = std::make_unique<Trackball>(orbit_camera(lattice, settings_.azimuth_deg, settings_.elevation_deg, 1.0),
                                            box_middle(lattice), box_radius(lattice));
   if (document_.light) {
-    take_light(document_.light);
-    const std::optional<ValueRange> lit = document_.light->grid.detail.isovalues;
-    const bool inside = !lit || (slider_->value() >= double(lit->low) && slider_->value() <= double(lit->high));
-    if (!inside) slider_->set_value(0.5 * (double(lit->low) + double(lit->high)));
+    take_light(*document_.light);
+    const std::optional<ValueRange> lit = document_.light->file->grid.detail.isovalues;
+    if (!has_light_of(document_, float(slider_->value())))
+      slider_->set_value(0.5 * (double(lit->low) + double(lit->high)));
   }
   const auto maker = std::make_shared<SurfaceMaker>(volume, stages_.extractors, settings_.extractor);
   worker_ = std::make_unique<SurfaceWorker>(
@@ -65,25 +82,14 @@ void Viewer::start(Document document) {
       wake_);
 }
 
-void Viewer::take_light(std::shared_ptr<const LightFile> light) {
-  outer_ = settings_.outer.value_or(light_outer(*light));
-  // Both sides keep their own light where the user calls the other side the outer one.
-  const bool turned = light->inner && outer_ != light_outer(*light);
-  renderer_->set_light(turned ? *light->inner : light->grid);
-  if (light->inner) renderer_->set_inner_light(turned ? light->grid : *light->inner);
-  shown_.exact = false;
-  document_.light = std::move(light);
-  if (layout_ == Layout::kLocal) layout_ = Layout::kGlobal;
-}
-
 void Viewer::request_surface() {
   exact_.reset();
-  worker_->request({.isovalue = float(slider_->value()), .outer = outer_, .normals = NormalKind::kGradient});
+  worker_->request({.isovalue = float(slider_->value()), .outer = lighted_.outer, .normals = NormalKind::kGradient});
 }
 
 void Viewer::act(Action action) {
   const double before = slider_->value();
-  message_.clear();
+  dismiss();
   switch (action) {
     case Action::kToggleLight:
       toggle_light();
@@ -98,10 +104,10 @@ void Viewer::act(Action action) {
       style_ = style_ == SurfaceStyle::kShaded ? SurfaceStyle::kTriangles : SurfaceStyle::kShaded;
       break;
     case Action::kBrighter:
-      exposure_stops_ += 1.0 / 3.0;
+      expose(1.0 / 3.0);
       break;
     case Action::kDarker:
-      exposure_stops_ -= 1.0 / 3.0;
+      expose(-1.0 / 3.0);
       break;
     case Action::kIsovalueDown:
       slider_->step(-1.0 / 500.0);
@@ -137,69 +143,15 @@ void Viewer::act(Action action) {
   if (slider_->value() != before) request_surface();
 }
 
-void Viewer::toggle_light() {
-  if (!document_.light && !shown_.exact) {
-    say(advice());
-    layout_ = Layout::kLocal;
-  } else {
-    layout_ = layout_ == Layout::kGlobal ? Layout::kLocal : Layout::kGlobal;
-  }
-}
-
-void Viewer::show_side_by_side() {
-  if (!document_.light && !shown_.exact) {
-    say(advice());
-  } else {
-    layout_ = layout_ == Layout::kSideBySide ? Layout::kGlobal : Layout::kSideBySide;
-  }
-}
-
-void Viewer::start_bake() {
-  if (bake_) return;
-  Run run = settings_.run;
-  // One core is left to the window.
-  run.threads = std::max(1, thread_count(run) - 1);
-  bake_ = std::make_unique<BackgroundTask<LightFile>>(
-      run,
-      [volume = document_.volume, scene = settings_.scene, &stages = stages_](const Run& watched) {
-        return bake_draft(volume->floats(), scene, stages, watched);
-      },
-      wake_);
-}
-
-void Viewer::toggle_exact_light() {
-  wants_exact_ = !wants_exact_;
-  exact_.reset();
-  if (!wants_exact_) {
-    shown_.exact = false;
-    renderer_->set_exact_light({});
-    if (!document_.light) layout_ = Layout::kLocal;
-  }
-}
-
-void Viewer::start_exact_light() {
-  Run run = settings_.run;
-  run.threads = std::max(1, thread_count(run) - 1);
-  exact_ = std::make_unique<BackgroundTask<PointLight>>(
-      run,
-      [document = document_, scene = settings_.scene, positions = shown_.surface.mesh.positions,
-       &stages = stages_](const Run& watched) { return trace_surface(document, scene, positions, stages, watched); },
-      wake_);
-}
-
-void Viewer::export_shown() {
-  const std::string path = free_file_name(document_.volume->name(), slider_->value(), "ply");
-  try {
-    export_surface(document_, stages_, settings_.extractor,
-                   {.isovalue = float(slider_->value()), .outer = outer_, .normals = NormalKind::kGradient},
-                   settings_.run, path);
-    say(fmt::format("wrote {}{}", path, document_.light ? "" : " (no light: without colours)"));
-  } catch (const Error& error) {
-    say(error.what());
-  }
+void Viewer::expose(double stops) {
+  exposure_stops_ += stops;
+  // Thirds that add up to none are shown without a sign of their rounding.
+  const double rounded = std::round(exposure_stops_ * 100.0) / 100.0 + 0.0;
+  say(fmt::format("exposure of global light: {:+.2f} stops", rounded));
 }
 
 void Viewer::press(MouseButton button) {
+  dismiss();
   if (button == MouseButton::kLeft && slider_->press(mouse_.x, mouse_.y)) {
     drag_ = Drag::kSlider;
     request_surface();
@@ -222,7 +174,10 @@ bool Viewer::move(double x, double y) {
   const glm::dvec2 a = picture_place(box, from.x, from.y);
   const glm::dvec2 b = picture_place(box, x, y);
   if (drag_ == Drag::kRotate) trackball_->rotate(a, b);
-  if (drag_ == Drag::kPan) trackball_->pan(a, b);
+  if (drag_ == Drag::kPan) {
+    const double shorter_a_height = std::min(1.0, box.width / std::max(box.height, 1.0));
+    trackball_->pan(shorter_a_height * a, shorter_a_height * b);
+  }
   // The height of the window is a factor of about 8.
   if (drag_ == Drag::kZoom) trackball_->zoom(10.0 * (b.y - a.y));
   return true;
@@ -233,12 +188,36 @@ void Viewer::release() {
   slider_->release();
 }
 
-void Viewer::scroll(double steps) { trackball_->zoom(steps); }
+void Viewer::scroll(double steps) {
+  dismiss();
+  trackball_->zoom(steps);
+}
 
-void Viewer::say(const std::string& line) { message_ = line; }
+void Viewer::say(const std::string& text) {
+  message_ = text;
+  message_end_ = Clock::now() +
+                 std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(settings_.message_seconds));
+}
+
+std::optional<double> Viewer::message_seconds_left() const {
+  if (message_.empty()) return std::nullopt;
+  return std::max(0.0, std::chrono::duration<double>(message_end_ - Clock::now()).count());
+}
+
+void Viewer::save(const std::string& extension, const std::function<void(const std::string& path)>& write,
+                  const std::string& remark) {
+  try {
+    const std::string path = save_under_free_name(document_.volume->name(), slider_->value(), extension, write);
+    say(fmt::format("wrote {}{}", path, remark));
+  } catch (const std::exception& error) {
+    say(fmt::format("not saved: {}", error.what()));
+  }
+}
 
 bool Viewer::update() {
-  const bool surface = update_surface();
+  const bool expired = message_seconds_left() == 0.0;
+  if (expired) dismiss();
+  const bool surface = update_surface() || expired;
   const bool bake = update_bake();
   return update_exact_light() || surface || bake;
 }
@@ -246,54 +225,19 @@ bool Viewer::update() {
 bool Viewer::update_surface() {
   std::optional<Surface> surface = worker_->take();
   if (!surface) return false;
-  renderer_->set_surface(surface->mesh, surface->settings.isovalue);
-  if (!surface->error.empty()) say(surface->error);
+  try {
+    renderer_->set_surface(surface->mesh, surface->settings.isovalue);
+  } catch (const std::exception& error) {
+    surface->mesh = {};
+    surface->error = error.what();
+  }
   worker_->recycle(std::move(shown_.surface.mesh));
   shown_ = {.surface = std::move(*surface)};
   return true;
 }
 
-bool Viewer::update_bake() {
-  if (!bake_) return false;
-  auto outcome = bake_->take();
-  if (!outcome) return true;  // its progress is shown
-  bake_.reset();
-  if (outcome->result) {
-    take_light(std::make_shared<const LightFile>(std::move(*outcome->result)));
-    request_surface();
-    say("a draft of the light; isolux bake makes a better one");
-  } else {
-    say(outcome->error);
-  }
-  return true;
-}
+std::string Viewer::failure() const { return shown_.surface.error.empty() ? exact_failure_ : shown_.surface.error; }
 
-bool Viewer::update_exact_light() {
-  const bool rests = worker_->idle() && drag_ == Drag::kNone && !bake_;
-  if (wants_exact_ && !exact_ && !shown_.exact && rests && !shown_.surface.mesh.positions.empty()) start_exact_light();
-  if (!exact_) return false;
-  auto outcome = exact_->take();
-  if (!outcome) return true;
-  exact_.reset();
-  if (outcome->result) {
-    renderer_->set_exact_light(outcome->result->radiance);
-    shown_.exact = true;
-    if (layout_ == Layout::kLocal) layout_ = Layout::kGlobal;
-  } else {
-    wants_exact_ = false;
-    say(outcome->error);
-  }
-  return true;
-}
-
-bool Viewer::settled() const {
-  return worker_->idle() && !bake_ && !exact_ &&
-         (!wants_exact_ || shown_.exact || shown_.surface.mesh.positions.empty());
-}
-
-std::optional<std::string> Viewer::take_screenshot_request() {
-  if (!std::exchange(screenshot_, false)) return std::nullopt;
-  return free_file_name(document_.volume->name(), slider_->value(), "png");
-}
+bool Viewer::take_screenshot_request() { return std::exchange(screenshot_, false); }
 
 }  // namespace isolux::viewer

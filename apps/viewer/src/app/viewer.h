@@ -1,12 +1,13 @@
 #pragma once
 
-#include <isolux/bake/stages.h>
-
+#include <chrono>
 #include <functional>
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
+#include "app/viewer_settings.h"
 #include "camera/trackball.h"
 #include "gl/overlay.h"
 #include "gl/surface_renderer.h"
@@ -18,23 +19,6 @@
 #include "ui/slider.h"
 
 namespace isolux::viewer {
-
-/// What the window starts with.
-struct ViewerSettings {
-  std::optional<double> isovalue;
-  std::optional<Layout> layout;    ///< default: global where there is a light
-  std::optional<OuterSide> outer;  ///< default: what the light says, else lower
-  double azimuth_deg = 30.0;
-  double elevation_deg = 20.0;
-  double exposure_stops = 0.0;
-  bool help = false;
-  bool exact_light = false;  ///< key x, from the start
-  BackendChoice extractor;
-  Scene scene;  ///< of a draft of the light, and of exact light where there is no other
-  Run run;
-};
-
-enum class MouseButton { kLeft, kMiddle, kRight };
 
 /// A window's size and the mouse in it, pixels of its framebuffer.
 struct WindowSize {
@@ -60,22 +44,34 @@ class Viewer {
   [[nodiscard]] bool move(double x, double y);
   void release();
   void scroll(double steps);
-  /// Shows a line of text for a while.
-  void say(const std::string& line);
+  /// Shows a text for some seconds, or until the next key or mouse button.
+  void say(const std::string& text);
+  void dismiss() { message_.clear(); }
+  /// Saves something of the shown surface under a free name, see save_under_free_name(), and says so, or why not.
+  void save(const std::string& extension, const std::function<void(const std::string& path)>& write,
+            const std::string& remark = {});
 
   /// Takes what the background threads finished. True if the picture changed.
   bool update();
-  /// Nothing more will change by itself.
+  /// Nothing more will change by itself, but for messages.
   [[nodiscard]] bool settled() const;
+  /// Until the message goes, seconds, if there is one.
+  [[nodiscard]] std::optional<double> message_seconds_left() const;
+  /// Why what is shown is not what was asked for: a surface or exact light that could not be made; "" otherwise.
+  [[nodiscard]] std::string failure() const;
   /// Draws everything into the current framebuffer.
   void draw(const WindowSize& size);
   /// Draws the surface alone, without slider and text.
   void draw_surface(const WindowSize& size);
 
   [[nodiscard]] std::string title() const;
+  /// What is said over the picture, one text a label: progress, message, advice, warnings.
+  [[nodiscard]] std::vector<std::string> texts() const;
+  /// What a pane is called.
+  [[nodiscard]] std::string name_of(const Pane& pane) const;
   [[nodiscard]] bool quit() const { return quit_; }
-  /// The file that a picture was asked for, once.
-  [[nodiscard]] std::optional<std::string> take_screenshot_request();
+  /// Whether a picture was asked for; once.
+  [[nodiscard]] bool take_screenshot_request();
 
  private:
   enum class Drag { kNone, kSlider, kRotate, kPan, kZoom };
@@ -83,27 +79,37 @@ class Viewer {
   /// The surface that the renderer has.
   struct Shown {
     Surface surface;
-    bool exact = false;  ///< its light was traced
+    bool exact = false;             ///< its light was traced
+    std::vector<Vec3f> radiance{};  ///< and found to be this at the vertices
   };
 
   void start(Document document);
   void request_surface();
-  void take_light(std::shared_ptr<const LightFile> light);
+  void take_light(KnownLight light);
+  void forget_exact_light();
+  void replace_light(KnownLight draft);
+  void bring_light_back();
   void toggle_light();
   void show_side_by_side();
   void start_bake();
+  void expose(double stops);
   void toggle_exact_light();
   void start_exact_light();
   bool update_surface();
   bool update_bake();
   bool update_exact_light();
+  [[nodiscard]] std::optional<Scene> draft_scene() const;
   void export_shown();
+  [[nodiscard]] VertexLight light_to_save() const;
+  void draw_pane(const Pane& pane, int height);
   void draw_slider(const WindowSize& size);
   void draw_texts(const WindowSize& size);
   void draw_help(const WindowSize& size);
   [[nodiscard]] std::string advice() const;
-  /// Whether the light is one of the shown isovalue, too.
+  /// Whether there is global light of the shown isovalue.
   [[nodiscard]] bool lit_here() const;
+  [[nodiscard]] Lighting lighting_of(const Pane& pane) const;
+  [[nodiscard]] std::vector<std::string> warnings() const;
 
   ViewerSettings settings_;
   const Stages& stages_;
@@ -111,7 +117,9 @@ class Viewer {
 
   Document document_;
   Shown shown_;
-  OuterSide outer_ = OuterSide::kLower;
+  Lighted lighted_;
+  std::optional<KnownLight> replaced_;  ///< the light given, while a draft is shown
+  bool is_draft_ = false;               ///< the document's light
   Layout layout_ = Layout::kLocal;
   SurfaceStyle style_ = SurfaceStyle::kShaded;
   double exposure_stops_ = 0.0;
@@ -120,6 +128,8 @@ class Viewer {
   bool quit_ = false;
   bool screenshot_ = false;
   std::string message_;
+  std::chrono::steady_clock::time_point message_end_;
+  std::string exact_failure_;
   double draw_seconds_ = 0.0;
 
   std::unique_ptr<Trackball> trackball_;
@@ -132,7 +142,7 @@ class Viewer {
   std::unique_ptr<SurfaceRenderer> renderer_;
   Overlay overlay_;
   std::unique_ptr<SurfaceWorker> worker_;
-  std::unique_ptr<BackgroundTask<LightFile>> bake_;
+  std::unique_ptr<BackgroundTask<KnownLight>> bake_;
   std::unique_ptr<BackgroundTask<PointLight>> exact_;
 };
 

@@ -28,21 +28,26 @@ double pixels_a_coordinate(GLFWwindow* window) {
   return width > 0 ? double(pixels) / width : 1.0;
 }
 
-void on_key(GLFWwindow* window, int key, int /*scancode*/, int action, int modifiers) {
-  if (action != GLFW_RELEASE) listener(window).on_key(key, modifiers);
+/// GLFW names keys by where they are on an American keyboard; a letter means what is printed on it.
+int key_as_printed(int key, int scancode) {
+  const char* name = glfwGetKeyName(key, scancode);
+  if (name == nullptr || name[0] == '\0' || name[1] != '\0') return key;
+  const bool letter = name[0] >= 'a' && name[0] <= 'z';
+  return letter ? GLFW_KEY_A + (name[0] - 'a') : key;
+}
+
+void on_key(GLFWwindow* window, int key, int scancode, int action, int modifiers) {
+  if (action != GLFW_RELEASE) listener(window).on_key(key_as_printed(key, scancode), modifiers);
 }
 
 void on_button(GLFWwindow* window, int button, int action, int modifiers) {
+  const std::optional<MouseButton> meant = button_of(button, modifiers);
+  if (!meant) return;
   if (action == GLFW_RELEASE) {
     listener(window).on_release();
-    return;
+  } else {
+    listener(window).on_press(*meant);
   }
-  MouseButton meant = MouseButton::kLeft;
-  if (button == GLFW_MOUSE_BUTTON_RIGHT) meant = MouseButton::kRight;
-  if (button == GLFW_MOUSE_BUTTON_MIDDLE || (button == GLFW_MOUSE_BUTTON_LEFT && (modifiers & GLFW_MOD_SHIFT) != 0)) {
-    meant = MouseButton::kMiddle;
-  }
-  listener(window).on_press(meant);
 }
 
 void on_move(GLFWwindow* window, double x, double y) {
@@ -115,7 +120,13 @@ void Window::swap() { glfwSwapBuffers(window_); }
 
 void Window::poll_events() { glfwPollEvents(); }
 
-void Window::wait_events() { glfwWaitEvents(); }
+void Window::wait_events(std::optional<double> most_seconds) {
+  if (most_seconds) {
+    glfwWaitEventsTimeout(*most_seconds);
+  } else {
+    glfwWaitEvents();
+  }
+}
 
 void Window::wake() { glfwPostEmptyEvent(); }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "app/viewer.h"
@@ -48,8 +49,8 @@ class Window {
   void swap();
   /// Handles the events that are there.
   void poll_events();
-  /// Sleeps until there are events, or wake().
-  void wait_events();
+  /// Sleeps until there are events, or wake(), or some time has passed.
+  void wait_events(std::optional<double> most_seconds);
   /// Ends wait_events(); from any thread.
   static void wake();
 

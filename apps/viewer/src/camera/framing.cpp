@@ -25,7 +25,7 @@ glm::dmat4 clip_from_centred(const Camera& camera, const Vec3& centre, double ra
   // A ten-thousandth of the far plane still leaves 24 bits of depth some thousand steps across the object.
   const double far_plane = distance + radius;
   const double near_plane = std::max(distance - radius, 1e-4 * far_plane);
-  return glm::perspective(2.0 * std::atan(camera.half_height / std::min(1.0, aspect)), aspect, near_plane, far_plane) *
+  return glm::perspective(2.0 * std::atan(camera.half_height), aspect, near_plane, far_plane) *
          glm::lookAt(eye, eye + camera.forward, camera.up);
 }
 

@@ -12,8 +12,7 @@ namespace isolux::viewer {
 [[nodiscard]] double box_radius(const Lattice& volume);
 
 /// From world positions relative to `centre` to OpenGL's clip space; everything within `radius` of the centre is
-/// between the near and the far plane, as far as it is before the camera. Camera::half_height is that of the picture's
-/// shorter side, so that what fits a square fits any picture.
+/// between the near and the far plane, as far as it is before the camera.
 [[nodiscard]] glm::dmat4 clip_from_centred(const Camera& camera, const Vec3& centre, double radius, double aspect);
 
 }  // namespace isolux::viewer

@@ -22,9 +22,13 @@ Trackball::Trackball(const Camera& home, const Vec3& centre, double radius)
 
 void Trackball::reset() {
   target_ = home_target_;
-  distance_ = glm::length(home_target_ - home_.eye);
+  nearness_ = 1.0;
   turn_ = glm::dquat(1.0, 0.0, 0.0, 0.0);
 }
+
+void Trackball::reframe(const Camera& home) { home_ = home; }
+
+double Trackball::home_distance() const { return glm::length(home_target_ - home_.eye); }
 
 void Trackball::rotate(const glm::dvec2& from, const glm::dvec2& to) {
   const Vec3 a = on_ball(from);
@@ -37,12 +41,13 @@ void Trackball::rotate(const glm::dvec2& from, const glm::dvec2& to) {
 
 void Trackball::pan(const glm::dvec2& from, const glm::dvec2& to) {
   const Camera now = camera();
-  const glm::dvec2 move = (to - from) * now.half_height * distance_;
+  const glm::dvec2 move = (to - from) * now.half_height * distance();
   target_ -= move.x * now.right + move.y * now.up;
 }
 
 void Trackball::zoom(double steps) {
-  distance_ = std::clamp(distance_ * std::pow(0.9, steps), radius_ / 50.0, radius_ * 50.0);
+  const double wanted = std::clamp(distance() * std::pow(0.9, steps), radius_ / 50.0, radius_ * 50.0);
+  nearness_ = home_distance() / wanted;
 }
 
 Camera Trackball::camera() const {
@@ -53,7 +58,7 @@ Camera Trackball::camera() const {
   result.right = axes[0];
   result.up = axes[1];
   result.forward = -axes[2];
-  result.eye = target_ - distance_ * result.forward;
+  result.eye = target_ - distance() * result.forward;
   return result;
 }
 

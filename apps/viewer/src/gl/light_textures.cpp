@@ -1,6 +1,7 @@
 #include "gl/light_textures.h"
 
 #include <fmt/format.h>
+#include <isolux/core/error.h>
 #include <isolux/gl_texture/brick_textures.h>
 #include <isolux/gl_texture/texture_uploader.h>
 
@@ -10,6 +11,7 @@
 #include <glm/gtc/type_ptr.hpp>
 #include <glm/matrix.hpp>
 #include <span>
+#include <string>
 #include <utility>
 
 namespace isolux::viewer {
@@ -28,10 +30,31 @@ Texture3D upload_grid(const IlluminationGrid& grid, const Lattice& volume, const
   return uploaders().create({}, {{"format", format}})->upload(grid, volume);
 }
 
-Texture3D upload_values(const Volume& volume) {
+/// What a user can do about a volume that no texture holds, whose light needs it: do without.
+std::string what_to_bake(const LightShader& kind) {
+  if (!kind.normals) return "bake with --set resampler.near_field=false";
+  if (kind.near_field_terms == 0) return "bake with --set resampler.normals=false";
+  return "bake with --set resampler.near_field=false --set resampler.normals=false";
+}
+
+Texture3D upload_values(const Volume& volume, const LightShader& kind) {
+  const Index3 n = volume.lattice().size;
+  const int most = largest_texture();
+  if (std::max({n.x, n.y, n.z}) > most) {
+    throw InvalidInput(fmt::format(
+        "this light is shown with the volume's {}x{}x{} values in a 3D texture, and this OpenGL driver allows at most "
+        "{} on an axis; {}",
+        n.x, n.y, n.z, most, what_to_bake(kind)));
+  }
   IlluminationGrid values(volume.lattice(), 1);
   values.values.assign(volume.values.values().begin(), volume.values.values().end());
-  return upload_grid(values, volume.lattice(), fits_float16(values.values) ? "float16" : "float32");
+  try {
+    return upload_grid(values, volume.lattice(), fits_float16(values.values) ? "float16" : "float32");
+  } catch (const GlError&) {
+    throw GlError(
+        fmt::format("this light is shown with the volume's {}x{}x{} values in a 3D texture, which OpenGL refuses; {}",
+                    n.x, n.y, n.z, what_to_bake(kind)));
+  }
 }
 
 void bind_texture(const ShaderProgram& program, GLint unit, const char* uniform, const Texture3D& texture) {
@@ -42,6 +65,12 @@ void bind_texture(const ShaderProgram& program, GLint unit, const char* uniform,
 
 }  // namespace
 
+int largest_texture() {
+  GLint limit = 0;
+  glGetIntegerv(GL_MAX_3D_TEXTURE_SIZE, &limit);
+  return limit;
+}
+
 LightTextures::LightTextures(const Volume& volume, const IlluminationGrid& light)
     : volume_(volume.lattice()),
       mapping_(texture_mapping(light.lattice, volume_)),
@@ -50,7 +79,7 @@ LightTextures::LightTextures(const Volume& volume, const IlluminationGrid& light
       ceiling_(light.detail.ceiling) {
   upload(LightReader(volume, light, TexelStorage::kBricks), light);
   if (!kind().at_vertices()) return;
-  values_ = upload_values(volume);
+  values_ = upload_values(volume, kind());
   memory_.volume = values_->bytes();
 }
 

@@ -15,6 +15,9 @@
 
 namespace isolux::viewer {
 
+/// Values that the driver takes on an axis of a 3D texture. Needs a current context.
+[[nodiscard]] int largest_texture();
+
 /// What a light takes on the graphics card, bytes.
 struct LightMemory {
   std::size_t light = 0;   ///< texels, and page table where there is one

@@ -66,8 +66,8 @@ void SurfaceRenderer::set_surface(const IndexedMesh& mesh, float isovalue) {
   vertex_count_ = GLsizei(mesh.positions.size());
   index_count_ = GLsizei(mesh.triangles.size() * 3);
   isovalue_ = isovalue;
-  for (std::optional<Light>* light : {&light_, &inner_light_})
-    if (*light && (*light)->at_vertices) (*light)->at_vertices->known = false;
+  for (Light* light : {light_.get(), inner_light_.get()})
+    if (light != nullptr && light->at_vertices) light->at_vertices->known = false;
   set_exact_light({});
 }
 
@@ -81,19 +81,20 @@ SurfaceRenderer::Light::Light(const Volume& volume, const IlluminationGrid& ligh
   if (textures.kind().at_vertices()) at_vertices.emplace(textures.kind());
 }
 
-void SurfaceRenderer::set_light(const IlluminationGrid& light) {
-  light_.emplace(volume_->floats(), light, Light::Side::kOuter);
-  inner_light_.reset();
+void SurfaceRenderer::set_light(const IlluminationGrid& light, const IlluminationGrid* inner) {
+  auto outer_light = std::make_unique<Light>(volume_->floats(), light, Light::Side::kOuter);
+  std::unique_ptr<Light> inner_light;
+  if (inner != nullptr) inner_light = std::make_unique<Light>(volume_->floats(), *inner, Light::Side::kInner);
+  light_ = std::move(outer_light);
+  inner_light_ = std::move(inner_light);
   set_exact_light({});
 }
 
-void SurfaceRenderer::set_inner_light(const IlluminationGrid& light) {
-  inner_light_.emplace(volume_->floats(), light, Light::Side::kInner);
-}
-
 void SurfaceRenderer::set_exact_light(std::span<const Vec3f> radiance) {
-  has_exact_ = !radiance.empty();
-  if (has_exact_) exact_.fill(radiance.data(), radiance.size_bytes());
+  has_exact_ = false;
+  if (radiance.empty()) return;
+  exact_.fill(radiance.data(), radiance.size_bytes());
+  has_exact_ = true;
 }
 
 void SurfaceRenderer::compute_at_vertices(Light& light) const {

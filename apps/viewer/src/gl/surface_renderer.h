@@ -36,12 +36,11 @@ class SurfaceRenderer {
 
   /// The level set of `isovalue`. \throw GlError if OpenGL has no memory for it
   void set_surface(const IndexedMesh& mesh, float isovalue);
-  /// \throw GlError, InvalidInput as LightTextures
-  void set_light(const IlluminationGrid& light);
+  /// Light of the outer side, and of the inner one, which is seen on back faces; null: none of its own. What was there
+  /// stays if anything is thrown. \throw GlError, InvalidInput as LightTextures
+  void set_light(const IlluminationGrid& light, const IlluminationGrid* inner = nullptr);
   /// Of the light set last; zeros without any.
   [[nodiscard]] LightMemory light_memory() const { return light_ ? light_->textures.memory() : LightMemory{}; }
-  /// Light of the inner side, seen on back faces, until another light is set. \pre set_light() \throw as set_light()
-  void set_inner_light(const IlluminationGrid& light);
   /// e at the vertices of the surface, until another surface or light is set. \pre as many as vertices
   /// \throw GlError if OpenGL has no memory for it
   void set_exact_light(std::span<const Vec3f> radiance);
@@ -94,8 +93,8 @@ class SurfaceRenderer {
   GLsizei index_count_ = 0;
   float isovalue_ = 0.0f;
   bool has_exact_ = false;
-  std::optional<Light> light_;
-  std::optional<Light> inner_light_;
+  std::unique_ptr<Light> light_;
+  std::unique_ptr<Light> inner_light_;
 };
 
 }  // namespace isolux::viewer

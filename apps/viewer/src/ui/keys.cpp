@@ -43,4 +43,17 @@ std::optional<Action> action_of(int key, int modifiers) {
   return std::nullopt;
 }
 
+std::optional<MouseButton> button_of(int button, int modifiers) {
+  switch (button) {
+    case GLFW_MOUSE_BUTTON_LEFT:
+      return (modifiers & GLFW_MOD_SHIFT) != 0 ? MouseButton::kMiddle : MouseButton::kLeft;
+    case GLFW_MOUSE_BUTTON_MIDDLE:
+      return MouseButton::kMiddle;
+    case GLFW_MOUSE_BUTTON_RIGHT:
+      return MouseButton::kRight;
+    default:
+      return std::nullopt;
+  }
+}
+
 }  // namespace isolux::viewer

@@ -37,6 +37,11 @@ struct KeyBinding {
 
 [[nodiscard]] std::span<const KeyBinding> key_bindings();
 
+enum class MouseButton { kLeft, kMiddle, kRight };
+
+/// What GLFW's mouse button means with these modifiers; nothing for buttons beyond the third.
+[[nodiscard]] std::optional<MouseButton> button_of(int button, int modifiers);
+
 /// What the key does, if anything.
 [[nodiscard]] std::optional<Action> action_of(int key, int modifiers);
 

@@ -1,5 +1,7 @@
 #include "ui/slider.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -10,6 +12,13 @@ Slider::Slider(double low, double high, double value) : low_(low), high_(high), 
 void Slider::set_value(double value) { value_ = std::clamp(value, low_, high_); }
 
 void Slider::step(double part) { set_value(value_ + part * (high_ - low_)); }
+
+std::string Slider::text() const {
+  const double largest = std::max(std::fabs(low_), std::fabs(high_));
+  const double step = (high_ - low_) / 500.0;
+  const int digits = step > 0.0 ? int(std::ceil(std::log10(largest / step))) + 1 : 0;
+  return fmt::format("{:.{}g}", value_, std::clamp(digits, 5, 9));
+}
 
 double Slider::position() const {
   const double part = high_ > low_ ? (value_ - low_) / (high_ - low_) : 0.5;

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <string>
+
 #include "ui/box.h"
 
 namespace isolux::viewer {
@@ -15,9 +17,15 @@ class Slider {
   [[nodiscard]] const Box& track() const { return track_; }
 
   [[nodiscard]] double value() const { return value_; }
+  /// The value in words, with digits enough to tell it from that a step of 1/500 further, at most those of a float.
+  [[nodiscard]] std::string text() const;
+  /// The nearest there is.
   void set_value(double value);
   /// Moves by a part of the whole range: .01 is one percent up.
   void step(double part);
+
+  [[nodiscard]] double low() const { return low_; }
+  [[nodiscard]] double high() const { return high_; }
 
   /// x of the knob's middle, and the value there.
   [[nodiscard]] double position() const;

@@ -1,0 +1,255 @@
+// The viewer without its window.
+#include "app/viewer.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <isolux/bake/light_metadata.h>
+#include <isolux/render/image.h>
+#include <isolux/volume_io/read.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <filesystem>
+#include <fstream>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include "egl_context.h"
+#include "gl_target.h"
+
+namespace isolux::viewer {
+namespace {
+
+using testing::Contains;
+using testing::Each;
+using testing::HasSubstr;
+using testing::Not;
+
+constexpr const char* kBall = "gen:sphere:24";
+
+/// A light of kBall in a dim scene of its own, which says that it is of these isovalues.
+std::shared_ptr<const LightFile> dim_light(std::optional<ValueRange> isovalues) {
+  const Volume volume = read_volume(kBall);
+  Scene scene;
+  scene.environment = UniformEnvironment{.radiance = Vec3f(0.25f)};
+  BakeSettings settings;
+  settings.texels = Index3(8);
+  LightFile light = make_light_file(bake(volume, scene, settings, builtin_stages(), {}), volume, scene, {});
+  light.grid.detail.isovalues = isovalues;
+  return std::make_shared<const LightFile>(std::move(light));
+}
+
+class ViewerTest : public testing::Test {
+ protected:
+  void SetUp() override {
+    if (!context_) GTEST_SKIP() << context_.why();
+    target_.emplace();
+  }
+
+  /// At rest, looking from -y.
+  void look(const std::function<void(ViewerSettings&)>& set, std::shared_ptr<const LightFile> light = nullptr,
+            const std::string& volume = kBall) {
+    ViewerSettings settings;
+    set(settings);
+    settings.azimuth_deg = 0.0;
+    settings.elevation_deg = 0.0;
+    if (!settings.isovalue && volume == kBall) settings.isovalue = -0.4;
+    Document document = make_document(read_stored_volume(volume));
+    if (light) document.light = known_light(std::move(light));
+    viewer_ = std::make_unique<Viewer>(std::move(document), settings, stages_, [] {});
+    rest();
+  }
+  void rest() {
+    do {
+      static_cast<void>(viewer_->update());
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    } while (!viewer_->settled());
+  }
+  void act(Action action) {
+    viewer_->act(action);
+    rest();
+  }
+  using Colour = std::array<int, 3>;
+  Colour pixel(int x, int y) {
+    viewer_->draw_surface({kSize, kSize, 1.0});
+    target_->read();
+    const auto& found = target_->colours[std::size_t(y) * kSize + std::size_t(x)];
+    return {found[0], found[1], found[2]};
+  }
+  Colour middle() { return pixel(kSize / 2, kSize / 2); }
+  Colour corner() { return pixel(1, 1); }
+  std::vector<std::string> texts() { return viewer_->texts(); }
+  std::string left_name() { return viewer_->name_of(make_panes(Layout::kGlobal, kSize, kSize)[0]); }
+
+  const test::EglContext context_;
+  Stages stages_ = builtin_stages();
+  std::optional<Target> target_;
+  std::unique_ptr<Viewer> viewer_;
+};
+
+void expect_shown(const std::array<int, 3>& found, const Vec3f& radiance) {
+  for (int c = 0; c < 3; ++c)
+    EXPECT_NEAR(found[std::size_t(c)], srgb_code(radiance[c]), 1) << "channel " << c << ", one code for rounding";
+}
+
+TEST_F(ViewerTest, ShowsExactLightInTheColoursOfTheScene) {
+  Scene scene;
+  scene.albedo.keys = {{0.0f, {0.9f, 0.05f, 0.05f}}};
+  scene.emission.keys = {{0.0f, {0.0f, 0.02f, 0.0f}}};
+  look([&](ViewerSettings& s) {
+    s.exact_light = true;
+    s.scene = scene;
+  });
+  // Emission lights a ball no further, for nothing of it sees itself.
+  expect_shown(middle(), {0.9f, 0.07f, 0.05f});
+  EXPECT_EQ(left_name(), "global light, exact");
+}
+
+// From outside a ball whose higher side is the outer one shows its inner side, which has no light of its own.
+TEST_F(ViewerTest, HasOneOuterSideForMeshAndExactLightAndDrafts) {
+  Scene higher;
+  higher.outer = OuterSide::kHigher;
+  Scene both;
+  both.sides = LitSides::kBoth;
+  const Vec3f dim(0.8f * 0.1f * 0.85f);
+  look([&](ViewerSettings& s) {
+    s.exact_light = true;
+    s.scene = higher;
+  });
+  expect_shown(middle(), dim);
+  look([&](ViewerSettings& s) {
+    s.outer = OuterSide::kHigher;
+    s.scene = Scene{};
+  });
+  act(Action::kBake);
+  EXPECT_EQ(left_name(), "global light");
+  expect_shown(middle(), dim);
+  EXPECT_THAT(texts(), Each(Not(HasSubstr("--outer")))) << "the draft is of that side";
+  look([&](ViewerSettings& s) {
+    s.outer = OuterSide::kHigher;
+    s.scene = both;
+  });
+  act(Action::kBake);
+  act(Action::kExactLight);
+  expect_shown(middle(), Vec3f(0.8f));
+}
+
+TEST_F(ViewerTest, BakesADraftInTheSceneOfTheLightAndGivesThatBack) {
+  look([](ViewerSettings&) {}, dim_light({}));
+  const Colour before = middle();
+  act(Action::kBake);
+  expect_shown(middle(), Vec3f(0.8f * 0.25f));
+  EXPECT_THAT(texts(), Contains(HasSubstr("instead of the light given; b brings that back")));
+  act(Action::kBake);
+  EXPECT_THAT(texts(), Contains("the light given again"));
+  EXPECT_EQ(middle(), before);
+  Scene white;
+  look([&](ViewerSettings& s) { s.scene = white; }, dim_light({}));
+  act(Action::kBake);
+  expect_shown(middle(), Vec3f(0.8f));
+}
+
+TEST_F(ViewerTest, BakesADraftOfAVolumeLongerThanTheLargestTexture) {
+  const int length = largest_texture() + 2;
+  const auto folder = std::filesystem::temp_directory_path();
+  const auto path = folder / ("isolux-long_" + std::to_string(length) + "x3x3_uint8.raw");
+  {
+    std::vector<char> values(std::size_t(length) * 9);
+    for (std::size_t i = 0; i < values.size(); ++i) values[i] = char((i * 37) % 101);
+    std::ofstream(path, std::ios::binary).write(values.data(), std::streamsize(values.size()));
+  }
+  look([](ViewerSettings&) {}, nullptr, path.string());
+  std::filesystem::remove(path);
+  act(Action::kBake);
+  EXPECT_THAT(texts(), Contains(HasSubstr("a draft of the light")));
+  EXPECT_EQ(left_name(), "global light");
+}
+
+TEST_F(ViewerTest, CallsLightLocalUntilThereIsAnother) {
+  look([&](ViewerSettings& s) { s.layout = Layout::kGlobal; });
+  EXPECT_EQ(left_name(), "local light");
+  viewer_->act(Action::kExactLight);
+  viewer_->act(Action::kToggleLight);
+  EXPECT_THAT(texts(), Contains(HasSubstr("exact light is being traced")));
+  EXPECT_THAT(texts(), Each(Not(HasSubstr("press b"))));
+  rest();
+  EXPECT_EQ(left_name(), "global light, exact");
+}
+
+TEST_F(ViewerTest, TakesMessagesAwayAtTheNextInputOrAfterSomeTime) {
+  look([&](ViewerSettings& s) { s.message_seconds = 0.2; });
+  const auto said = [&] {
+    const std::vector<std::string> all = texts();
+    return std::find(all.begin(), all.end(), "hello") != all.end();
+  };
+  viewer_->say("hello");
+  EXPECT_TRUE(said());
+  viewer_->press(MouseButton::kRight);
+  EXPECT_FALSE(said());
+  viewer_->say("hello");
+  viewer_->scroll(1.0);
+  EXPECT_FALSE(said());
+  EXPECT_EQ(viewer_->message_seconds_left(), std::nullopt);
+  viewer_->say("hello");
+  ASSERT_TRUE(viewer_->message_seconds_left().has_value());
+  EXPECT_LE(*viewer_->message_seconds_left(), 0.2);
+  std::this_thread::sleep_for(std::chrono::milliseconds(250));
+  EXPECT_TRUE(viewer_->update()) << "the picture changes";
+  EXPECT_FALSE(said());
+}
+
+TEST_F(ViewerTest, SaysWarningsBesidesMessagesAndWithoutLight) {
+  look([&](ViewerSettings& s) { s.isovalue = -5.0; });
+  viewer_->say("hello");
+  EXPECT_THAT(texts(), Contains("hello"));
+  EXPECT_THAT(texts(), Contains(HasSubstr("no surface")));
+  look([&](ViewerSettings& s) { s.isovalue = -0.2; }, dim_light(ValueRange{-0.41f, -0.39f}));
+  viewer_->say("hello");
+  EXPECT_THAT(texts(), Contains(HasSubstr("the light is of isovalues -0.41 to -0.39")));
+  EXPECT_THAT(texts(), Contains("hello"));
+}
+
+TEST_F(ViewerTest, SaysThatAnIsovalueIsOutsideTheValues) {
+  look([&](ViewerSettings& s) { s.isovalue = 5.0; });
+  EXPECT_THAT(texts(), Contains(HasSubstr("isovalue 5 is outside the values")));
+  look([&](ViewerSettings& s) { s.isovalue = -0.3; });
+  EXPECT_THAT(texts(), Each(Not(HasSubstr("outside"))));
+}
+
+TEST_F(ViewerTest, ExposesGlobalLightAndItsGroundAsTheRaycasterDoes) {
+  look([&](ViewerSettings& s) { s.exposure_stops = -1.0; }, dim_light({}));
+  expect_shown(corner(), Vec3f(0.1f));
+  act(Action::kToggleLight);
+  expect_shown(corner(), Vec3f(0.2f));
+  const Colour local = middle();
+  act(Action::kBrighter);
+  EXPECT_EQ(middle(), local);
+  EXPECT_THAT(texts(), Contains(HasSubstr("-0.67 stops")));
+}
+
+TEST_F(ViewerTest, SavesNoColoursOfALightOfOtherIsovalues) {
+  const auto before = std::filesystem::current_path();
+  const auto folder = std::filesystem::temp_directory_path() / ("isolux-viewer-" + std::to_string(getpid()));
+  std::filesystem::create_directories(folder);
+  std::filesystem::current_path(folder);
+  look([&](ViewerSettings& s) { s.isovalue = -0.2; }, dim_light(ValueRange{-0.41f, -0.39f}));
+  act(Action::kExport);
+  EXPECT_THAT(texts(), Contains(HasSubstr("without colours: the light is of other isovalues")));
+  act(Action::kExactLight);
+  act(Action::kExport);
+  EXPECT_THAT(texts(), Contains("wrote gen_sphere_24--0.2-2.ply"));
+  EXPECT_GT(std::filesystem::file_size("gen_sphere_24--0.2-2.ply"),
+            std::filesystem::file_size("gen_sphere_24--0.2.ply"));
+  std::filesystem::current_path(before);
+  std::filesystem::remove_all(folder);
+}
+
+}  // namespace
+}  // namespace isolux::viewer
