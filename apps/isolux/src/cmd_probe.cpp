@@ -1,11 +1,13 @@
 #include <fmt/format.h>
 #include <fmt/ostream.h>
 #include <isolux/core/field.h>
+#include <isolux/mc_extract/vertex_resolution.h>
 #include <isolux/resample/light_reader.h>
 #include <isolux/volume_io/atomic_file.h>
 
 #include <algorithm>
 #include <cmath>
+#include <glm/common.hpp>
 #include <limits>
 #include <memory>
 #include <optional>
@@ -26,17 +28,30 @@ struct ProbeOptions {
   std::string output;
 };
 
-/// The point in index space, moved by rounding errors at most into the box; nothing outside it.
-std::optional<Vec3> inside(const Lattice& lattice, const Vec3& world) {
-  Vec3 index = lattice.frame.index(world);
-  for (int a = 0; a < 3; ++a) {
-    const double last = lattice.size[a] - 1;
-    const double slack = 1e-6 * last;
-    if (!(index[a] >= -slack && index[a] <= last + slack)) return std::nullopt;
-    index[a] = std::clamp(index[a], 0.0, last);
+/// A volume's box, a little wider: by what rounding errors may move a point on its faces.
+class Box {
+ public:
+  explicit Box(const Lattice& lattice) : lattice_(lattice) {
+    // Half a voxel at most: where floats tell less apart, only points that are known better are taken.
+    const Vec3 of_mesh = glm::min(8.0 * vertex_resolution(lattice), 0.5);
+    slack_ = glm::max(1e-6 * Vec3(lattice.size - 1), of_mesh);
   }
-  return index;
-}
+
+  /// The point in index space, moved by the slack at most into the box; nothing outside it.
+  [[nodiscard]] std::optional<Vec3> inside(const Vec3& world) const {
+    Vec3 index = lattice_.frame.index(world);
+    for (int a = 0; a < 3; ++a) {
+      const double last = lattice_.size[a] - 1;
+      if (!(index[a] >= -slack_[a] && index[a] <= last + slack_[a])) return std::nullopt;
+      index[a] = std::clamp(index[a], 0.0, last);
+    }
+    return index;
+  }
+
+ private:
+  Lattice lattice_;
+  Vec3 slack_;
+};
 
 void run_probe(const ProbeOptions& options, Session& session) {
   if (!options.light.given()) throw UsageError("--light is required: the light to read at the points");
@@ -46,6 +61,7 @@ void run_probe(const ProbeOptions& options, Session& session) {
   const Volume volume = options.volume.read(session);
   const LightFile light = options.light.read(volume, session);
   const std::vector<Vec3> points = session.timed("read", [&] { return read_point_table(options.points); });
+  const Box box(volume.lattice());
   const TrilinearField field(volume);
   const LightReader reader(volume, options.light.of_side(light, options.side.or_outer()), TexelStorage::kBricks,
                            session.run);
@@ -54,7 +70,7 @@ void run_probe(const ProbeOptions& options, Session& session) {
     write_atomically(options.output, [&](std::ostream& out) {
       out << (light.grid.channels == 3 ? "x,y,z,isovalue,e_r,e_g,e_b\n" : "x,y,z,isovalue,e\n");
       for (const Vec3& p : points) {
-        const auto index = inside(volume.lattice(), p);
+        const auto index = box.inside(p);
         if (!index) ++outside;
         const double nan = std::numeric_limits<double>::quiet_NaN();
         const Vec3f e = index ? reader.at_index(*index) : Vec3f(float(nan));

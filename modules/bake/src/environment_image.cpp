@@ -1,5 +1,3 @@
-#include <ImfArray.h>
-#include <ImfRgbaFile.h>
 #include <fmt/format.h>
 #include <isolux/bake/scene_file.h>
 #include <isolux/core/error.h>
@@ -7,39 +5,17 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
-#include <exception>
 #include <filesystem>
 #include <fstream>
 #include <memory>
 
 #include <stb/stb_image.h>
 
+#include "exr_image.h"
+#include "radiance_header.h"
+
 namespace isolux {
 namespace {
-
-ImageEnvironment read_exr(const std::string& path) {
-  try {
-    Imf::RgbaInputFile file(path.c_str());
-    const auto window = file.dataWindow();
-    ImageEnvironment image;
-    image.width = window.max.x - window.min.x + 1;
-    image.height = window.max.y - window.min.y + 1;
-    Imf::Array2D<Imf::Rgba> rows(image.height, image.width);
-    file.setFrameBuffer(&rows[0][0] - window.min.x - std::ptrdiff_t(window.min.y) * image.width, 1,
-                        std::size_t(image.width));
-    file.readPixels(window.min.y, window.max.y);
-    image.pixels.reserve(std::size_t(image.width) * std::size_t(image.height));
-    for (int y = 0; y < image.height; ++y) {
-      for (int x = 0; x < image.width; ++x) {
-        const Imf::Rgba& p = rows[y][x];
-        image.pixels.emplace_back(float(p.r), float(p.g), float(p.b));
-      }
-    }
-    return image;
-  } catch (const std::exception& error) {
-    throw IoError(fmt::format("{}: cannot read the OpenEXR image: {}", path, error.what()));
-  }
-}
 
 /// A file for stb that notes when more is asked than there is: of a Radiance HDR that ends early stb makes the rest
 /// black and says nothing, or waits for ever for a run that is not empty.
@@ -78,7 +54,7 @@ class StbFile {
   bool ended_early_ = false;
 };
 
-/// Radiance HDR as it is; 8-bit formats from sRGB, exactly (stb's own conversion is a plain power).
+/// Radiance HDR as it was measured; 8-bit formats from sRGB, exactly (stb's own conversion is a plain power).
 ImageEnvironment read_with_stb(const std::string& path) {
   const auto srgb_to_linear = [](float v) {
     return v <= 0.04045f ? v / 12.92f : std::pow((v + 0.055f) / 1.055f, 2.4f);
@@ -94,13 +70,14 @@ ImageEnvironment read_with_stb(const std::string& path) {
     if (file.ended_early()) throw IoError(fmt::format("{}: the image ends early", path));
   };
   if (hdr) {
+    const Vec3 exposure = radiance_exposure(path);
     const std::unique_ptr<float, void (*)(void*)> data(
         stbi_loadf_from_callbacks(&StbFile::callbacks(), &file, &image.width, &image.height, &channels, 3),
         stbi_image_free);
     require(data != nullptr);
     const float* p = data.get();
     for (std::ptrdiff_t i = 0; i < std::ptrdiff_t(image.width) * image.height; ++i, p += 3)
-      image.pixels.emplace_back(p[0], p[1], p[2]);
+      image.pixels.emplace_back(Vec3(p[0], p[1], p[2]) / exposure);
     return image;
   }
   const std::unique_ptr<stbi_us, void (*)(void*)> data(
@@ -124,7 +101,7 @@ ImageEnvironment read_environment_image(const std::string& path) {
   std::string extension = std::filesystem::path(path).extension().string();
   std::transform(extension.begin(), extension.end(), extension.begin(),
                  [](unsigned char c) { return char(std::tolower(c)); });
-  ImageEnvironment image = extension == ".exr" ? read_exr(path) : read_with_stb(path);
+  ImageEnvironment image = extension == ".exr" ? read_exr_image(path) : read_with_stb(path);
   for (const Vec3f& p : image.pixels) {
     if (!(p.x >= 0.0f && p.y >= 0.0f && p.z >= 0.0f && std::isfinite(p.x + p.y + p.z))) {
       throw InvalidInput(

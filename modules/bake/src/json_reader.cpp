@@ -44,6 +44,11 @@ Vec3f JsonObject::vector(const char* key) const {
   return {numbers[0], numbers[1], numbers[2]};
 }
 
+Vec3 JsonObject::position(const char* key) const {
+  const auto numbers = json_doubles(at(key), 3, place(key));
+  return {numbers[0], numbers[1], numbers[2]};
+}
+
 Vec3f JsonObject::colour(const char* key) const {
   const Vec3f c = vector(key);
   if (c.x < 0.0f || c.y < 0.0f || c.z < 0.0f) {
@@ -68,18 +73,23 @@ float JsonObject::positive(const char* key) const {
   return number;
 }
 
-std::vector<float> json_numbers(const nlohmann::json& json, std::size_t count, const std::string& place) {
+std::vector<double> json_doubles(const nlohmann::json& json, std::size_t count, const std::string& place) {
   const auto refuse = [&] {
     return InvalidInput(fmt::format("{}: '{}' where an array of {} numbers within +-{:.2g} is wanted", place,
                                     json.dump(), count, double(std::numeric_limits<float>::max())));
   };
   if (!json.is_array() || json.size() != count) throw refuse();
-  std::vector<float> numbers;
+  std::vector<double> numbers;
   for (const auto& element : json) {
     if (!element.is_number() || !std::isfinite(element.get<float>())) throw refuse();
-    numbers.push_back(element.get<float>());
+    numbers.push_back(element.get<double>());
   }
   return numbers;
+}
+
+std::vector<float> json_numbers(const nlohmann::json& json, std::size_t count, const std::string& place) {
+  const auto numbers = json_doubles(json, count, place);
+  return {numbers.begin(), numbers.end()};
 }
 
 }  // namespace isolux

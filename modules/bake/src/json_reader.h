@@ -24,6 +24,8 @@ class JsonObject {
   [[nodiscard]] std::string text(const char* key) const;
   /// Three finite numbers. \throw InvalidInput
   [[nodiscard]] Vec3f vector(const char* key) const;
+  /// The same with all of their digits: a place in the world.
+  [[nodiscard]] Vec3 position(const char* key) const;
   [[nodiscard]] Vec3f vector_or(const char* key, const Vec3f& otherwise) const {
     return has(key) ? vector(key) : otherwise;
   }
@@ -47,7 +49,9 @@ class JsonObject {
   std::string place_;
 };
 
-/// The numbers of an array of `count`. \throw InvalidInput naming `place`
+/// The numbers of an array of `count`, each within a float's range. \throw InvalidInput naming `place`
+[[nodiscard]] std::vector<double> json_doubles(const nlohmann::json& json, std::size_t count, const std::string& place);
+/// The same, rounded to floats.
 [[nodiscard]] std::vector<float> json_numbers(const nlohmann::json& json, std::size_t count, const std::string& place);
 
 }  // namespace isolux

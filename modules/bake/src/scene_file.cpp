@@ -60,7 +60,7 @@ Light read_light(const json& value, const std::string& place) {
   }
   if (type == "rectangle") {
     object.require_keys({"type", "center", "u", "v", "radiance"});
-    const RectangleLight rectangle{.center = object.vector("center"),
+    const RectangleLight rectangle{.center = object.position("center"),
                                    .u = object.direction("u"),
                                    .v = object.direction("v"),
                                    .radiance = object.colour("radiance")};
@@ -70,8 +70,9 @@ Light read_light(const json& value, const std::string& place) {
   }
   if (type == "sphere") {
     object.require_keys({"type", "center", "radius", "radiance"});
-    return SphereLight{
-        .center = object.vector("center"), .radius = object.positive("radius"), .radiance = object.colour("radiance")};
+    return SphereLight{.center = object.position("center"),
+                       .radius = object.positive("radius"),
+                       .radiance = object.colour("radiance")};
   }
   refuse_type(object, "sun, rectangle, sphere");
 }
@@ -114,7 +115,7 @@ IsovalueColour read_albedo(const JsonObject& scene) {
   return albedo;
 }
 
-json vector_to_json(const Vec3f& v) { return json::array({v.x, v.y, v.z}); }
+json vector_to_json(const auto& v) { return json::array({v.x, v.y, v.z}); }
 
 json environment_to_json(const Environment& environment) {
   if (const auto* uniform = std::get_if<UniformEnvironment>(&environment)) {

@@ -63,8 +63,8 @@ class BoxCap {
   [[nodiscard]] Vec3 index_of(std::uint32_t vertex) const {
     return lattice_.frame.index(Vec3(mesh_.positions[vertex]));
   }
-  [[nodiscard]] bool on_side(double coordinate, int side) const {
-    return std::fabs(coordinate - side) < 0.5 * level_set_.margin;
+  [[nodiscard]] bool on_side(const Vec3& index, int axis, int side) const {
+    return std::fabs(index[axis] - side) < 0.5 * level_set_.margin[axis];
   }
   [[nodiscard]] std::size_t key(const Square& square) const {
     return lattice_.offset(square.cell.x, square.cell.y, square.cell.z) * 6 + std::size_t(square.face);
@@ -85,7 +85,7 @@ class BoxCap {
       for (int face = 0; face < 6; ++face) {
         const int axis = face / 2;
         const int side = face % 2 == 0 ? 0 : lattice_.size[axis] - 1;
-        if (!on_side(a[axis], side) || !on_side(b[axis], side)) continue;
+        if (!on_side(a, axis, side) || !on_side(b, axis, side)) continue;
         const Index3 cell = glm::clamp(Index3(glm::floor(middle)), Index3(0), lattice_.size - 2);
         segments_[key({.face = face, .cell = cell})].emplace_back(from, to);
       }
@@ -128,9 +128,13 @@ class BoxCap {
   /// Which side of the square (from corner i to i + 1) a vertex lies on, or -1.
   [[nodiscard]] int side_of(const Square& square, std::uint32_t vertex) const {
     const Point2 p = place(square, index_of(vertex));
+    // In margins: where those of the axes differ, the rounding across one may be more than the other's whole margin.
+    const Point2 margin = place(square, Vec3(square.corner(0)) + Vec3(level_set_.margin));
     const std::array<double, 4> distance = {p.y, 1.0 - p.x, 1.0 - p.y, p.x};
-    const int nearest = int(std::min_element(distance.begin(), distance.end()) - distance.begin());
-    return distance[nearest] < 0.5 * level_set_.margin ? nearest : -1;
+    std::array<double, 4> margins{};
+    for (int i = 0; i < 4; ++i) margins[i] = distance[i] / std::fabs(i % 2 == 0 ? margin.y : margin.x);
+    const int nearest = int(std::min_element(margins.begin(), margins.end()) - margins.begin());
+    return margins[nearest] < 0.5 ? nearest : -1;
   }
 
   void fill(const Square& square) {

@@ -80,13 +80,13 @@ struct HighOrderGradient<Value>::Weights {
 };
 
 template <class Value>
-HighOrderGradient<Value>::HighOrderGradient(const TrilinearFieldOf<Value>& field, double tolerance)
+HighOrderGradient<Value>::HighOrderGradient(const TrilinearFieldOf<Value>& field, const Vec3& tolerance)
     : field_(field), size_(field.lattice().size), tolerance_(tolerance) {}
 
 template <class Value>
 bool HighOrderGradient<Value>::is_grid_point(const Vec3& index) const {
   for (int a = 0; a < 3; ++a)
-    if (std::fabs(index[a] - std::round(index[a])) > tolerance_) return false;
+    if (std::fabs(index[a] - std::round(index[a])) > tolerance_[a]) return false;
   return true;
 }
 
@@ -96,7 +96,7 @@ typename HighOrderGradient<Value>::Weights HighOrderGradient<Value>::weights(dou
   const int size = size_[axis];
   x = within_axis(x, size);
   const double nearest = std::round(x);
-  const bool on_grid = std::fabs(x - nearest) <= tolerance_;
+  const bool on_grid = std::fabs(x - nearest) <= tolerance_[axis];
   if (on_grid) x = nearest;
   const auto first_of = [&](int count) { return on_grid ? int(x) - count / 2 : int(x) - count / 2 + 1; };
   Weights result;

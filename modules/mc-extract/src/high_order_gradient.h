@@ -20,8 +20,8 @@ struct Stencil {
 template <class Value>
 class HighOrderGradient {
  public:
-  /// Coordinates closer than `tolerance` to a grid point's count as its.
-  HighOrderGradient(const TrilinearFieldOf<Value>& field, double tolerance);
+  /// Coordinates closer to a grid point's than `tolerance` of their axis count as its.
+  HighOrderGradient(const TrilinearFieldOf<Value>& field, const Vec3& tolerance);
 
   /// Index space, per index step; none where the data are too rough for more than central differences, or not finite.
   [[nodiscard]] std::optional<Vec3> at(const Vec3& index) const;
@@ -42,7 +42,7 @@ class HighOrderGradient {
 
   TrilinearFieldOf<Value> field_;
   Index3 size_;
-  double tolerance_;
+  Vec3 tolerance_;
 };
 
 }  // namespace isolux::mc

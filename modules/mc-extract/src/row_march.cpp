@@ -29,13 +29,13 @@ VertexFrame vertex_frame(const Lattice& lattice, const LevelSet& level_set) {
   const double sign = level_set.outer == OuterSide::kLower ? -1.0 : 1.0;
   for (int w = 0; w < 3; ++w) {
     frame.origin[w] = float(lattice.frame.origin[w]);
+    frame.margin[w] = level_set.margin[w];
     for (int a = 0; a < 3; ++a) {
       frame.axes[a][w] = float(lattice.frame.axes[a][w]);
       frame.outwards[a][w] = float(sign * to_normal[a][w]);
       frame.along_edge[a][w] = float(glm::normalize(to_normal[a])[w]);
     }
   }
-  frame.margin = level_set.margin;
   return frame;
 }
 

@@ -72,7 +72,7 @@ std::uint32_t SurfaceBuilder::edge_vertex(const Index3& low, int direction) {
   // Where the field has no gradient the edge itself still tells which way is up.
   const bool rises = level_set_.inside(b) == (level_set_.outer == OuterSide::kLower);
   const Vec3 uphill = Vec3(step) * (rises ? 1.0 : -1.0);
-  id = push(Vec3(low) + double(level_set_.fraction(a, b)) * Vec3(step), uphill);
+  id = push(Vec3(low) + double(level_set_.fraction(a, b, direction)) * Vec3(step), uphill);
   if (step.z == 0 && low.z == slabs_.first) block_.bottom.push_back({point * 8 + std::size_t(direction), id});
   if (step.z == 0 && low.z == slabs_.last) block_.top.push_back({point * 8 + std::size_t(direction), id});
   return id;

@@ -41,7 +41,7 @@ struct VertexFrame {
   float outwards[3][3];  ///< column a: what a gradient along index axis a adds to the direction outwards, scaled
   float along_edge[3]
                   [3];  ///< unit vector for an edge along axis a whose lower end is inside, where there is no gradient
-  float margin;
+  float margin[3];      ///< of an edge along each axis
 };
 
 /// Vertices that a mesh holds already, and may be written over.

@@ -157,8 +157,8 @@ class VertexMaker {
       z = kAxis == 2 ? along(k, march_.nz, before, a, b, after) : across(k, march_.nz, down_across, up_across);
     }
     const F isovalue = hn::Set(kF, march_.isovalue);
-    const F margin = hn::Set(kF, frame_.margin);
-    const F end = hn::Set(kF, 1.0f - frame_.margin);
+    const F margin = hn::Set(kF, frame_.margin[kAxis]);
+    const F end = hn::Set(kF, 1.0f - frame_.margin[kAxis]);
     F t = hn::Div(hn::Sub(isovalue, a), hn::Sub(b, a));
     // Comparisons with NaN are false, so that the first line also ends NaN.
     t = hn::IfThenElse(hn::Gt(t, margin), t, margin);

@@ -63,14 +63,14 @@ PreparedLight::PreparedLight(const Light& light) : shape_(LightView::Cone{}) {
   } else if (const auto* rectangle = std::get_if<RectangleLight>(&light)) {
     const Vec3 cross = glm::cross(Vec3(rectangle->u), Vec3(rectangle->v));
     const double length = glm::length(cross);
-    shape_ = Parallelogram{.center = Vec3(rectangle->center),
+    shape_ = Parallelogram{.center = rectangle->center,
                            .u = Vec3(rectangle->u),
                            .v = Vec3(rectangle->v),
                            .normal = cross / length,
                            .area = 4.0 * length,
                            .radiance = Vec3(rectangle->radiance)};
   } else if (const auto* sphere = std::get_if<SphereLight>(&light)) {
-    shape_ = Ball{.center = Vec3(sphere->center), .radius = double(sphere->radius), .radiance = Vec3(sphere->radiance)};
+    shape_ = Ball{.center = sphere->center, .radius = double(sphere->radius), .radiance = Vec3(sphere->radiance)};
   }
 }
 

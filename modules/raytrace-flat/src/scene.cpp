@@ -50,8 +50,11 @@ void require_direction(std::string_view what, const Vec3f& v) {
     throw InvalidInput(fmt::format("{} = {},{},{}: allowed is any direction but 0,0,0", what, v.x, v.y, v.z));
 }
 
-void require_place(std::string_view what, const Vec3f& v) {
-  if (!is_finite(v)) throw InvalidInput(fmt::format("{} = {},{},{}: allowed are finite numbers", what, v.x, v.y, v.z));
+void require_place(std::string_view what, const Vec3& v) {
+  // Within a float's range, so that squares of distances stay in a double's.
+  if (!is_finite(Vec3f(v)))
+    throw InvalidInput(fmt::format("{} = {},{},{}: allowed are numbers within +-{:.2g}", what, v.x, v.y, v.z,
+                                   double(std::numeric_limits<float>::max())));
 }
 
 void require_keys(std::string_view what, const IsovalueColour& colour, float most) {

@@ -189,6 +189,31 @@ TEST_P(Symmetry, SpacingAndOriginOfTheWorldDoNotMatter) {
   }
 }
 
+TEST_P(Symmetry, LampsMoveWithTheWorld) {
+  const Volume volume = gyroid(24);
+  const Sites sites = sites_at(volume, anywhere(200, 7), OuterSide::kLower);
+  const auto light_at = [&](const Vec3& offset) {
+    Volume moved = volume;
+    Lattice lattice = volume.lattice();
+    lattice.frame.origin += offset;
+    moved.values = Grid<float>(lattice, {volume.values.values().begin(), volume.values.values().end()});
+    Scene scene = darkness(0.5f);
+    scene.lights = {
+        SphereLight{.center = Vec3(0.4, 0.5, 1.5) + offset, .radius = 0.2f, .radiance = Vec3f(10.0f)},
+        RectangleLight{
+            .center = Vec3(0.3, 0.6, 0.7) + offset, .u = {0.2f, 0, 0}, .v = {0, -0.2f, 0}, .radiance = Vec3f(2.0f)}};
+    return trace(moved, scene, sites, 64, kAllBounces).samples;
+  };
+  const SampleSet expected = light_at(Vec3(0.0));
+  for (const double far : {1e4, 1e8}) {
+    const ErrorOfE error =
+        error_of(light_at(Vec3(far, -far, 0.5 * far)), [&](std::size_t i) { return double(expected.radiance[i]); });
+    // Doubles resolve the places to 1.5e-8 at most: the same rays, but for some that graze.
+    EXPECT_LT(error.rms, 0.003) << far;
+    EXPECT_LT(std::abs(error.bias), 0.0005) << far;
+  }
+}
+
 // The open integrating sphere on a grid of spacing 1:1:20 in a world turned by a direction matrix, 1e6 from its origin.
 TEST_P(Symmetry, FlatCellsFarFromTheOriginLightAsCubesDo) {
   const Index3 size(81, 81, 5);

@@ -152,7 +152,7 @@ class CellSurface {
     const Index3 low = cell_ + Index3(p);
     Index3 high = low;
     ++high[e.axis];
-    p[e.axis] = surface_.level_set().fraction(surface_.value(low), surface_.value(high));
+    p[e.axis] = surface_.level_set().fraction(surface_.value(low), surface_.value(high), 1 << e.axis);
     return p;
   }
   [[nodiscard]] Ring placed(const CellPolygon& polygon) const {
@@ -199,8 +199,8 @@ class CellSurface {
 
   /// A narrow ring widened until floats can tell its points apart.
   [[nodiscard]] std::array<Vec3, 6> spread(std::array<Vec3, 6> ring) const {
-    const double margin = surface_.level_set().margin;
     for (int axis = 0; axis < 3; ++axis) {
+      const double margin = surface_.level_set().margin[axis];
       double low = 1.0;
       double high = 0.0;
       for (const Vec3& p : ring) {
@@ -228,9 +228,8 @@ class CellSurface {
       const Vec3 closer = glm::clamp(middle - g * (field_.value(middle) / squared), Vec3(0.05), Vec3(0.95));
       if (std::fabs(field_.value(closer)) < std::fabs(field_.value(middle))) middle = closer;
     }
-    const double margin = surface_.level_set().margin;
-    const std::uint32_t centre =
-        surface_.add_vertex(Vec3(cell_) + glm::clamp(middle, Vec3(margin), Vec3(1.0 - margin)));
+    const Vec3 margin(surface_.level_set().margin);
+    const std::uint32_t centre = surface_.add_vertex(Vec3(cell_) + glm::clamp(middle, margin, 1.0 - margin));
     for (std::size_t i = 0; i < ring.size(); ++i)
       surface_.add_triangle(ring[i].id, ring[(i + 1) % ring.size()].id, centre);
   }

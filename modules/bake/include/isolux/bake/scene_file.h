@@ -16,7 +16,8 @@ namespace isolux {
 /// The scene as one line of JSON. An image environment is described by its size, not repeated.
 [[nodiscard]] std::string scene_to_json(const Scene& scene);
 
-/// A latitude-longitude picture as linear radiance: .hdr and .exr as they are, .png and .jpg decoded from sRGB.
+/// A latitude-longitude picture as linear radiance: .hdr with its exposures divided out, the display window of .exr,
+/// black where there are no data, .png and .jpg decoded from sRGB.
 /// \throw IoError, InvalidInput naming the file
 [[nodiscard]] ImageEnvironment read_environment_image(const std::string& path);
 

@@ -46,7 +46,7 @@ struct SunLight {
 
 /// center +- u +- v, shining on the side of cross(u, v).
 struct RectangleLight {
-  Vec3f center{0.0f};
+  Vec3 center{0.0};  ///< of as many digits as a volume's origin: lamp and volume move together
   Vec3f u{1.0f, 0.0f, 0.0f};
   Vec3f v{0.0f, 1.0f, 0.0f};
   Vec3f radiance{1.0f};
@@ -54,7 +54,7 @@ struct RectangleLight {
 
 /// A ball that shines outwards.
 struct SphereLight {
-  Vec3f center{0.0f};
+  Vec3 center{0.0};
   float radius = 1.0f;
   Vec3f radiance{1.0f};
 };
