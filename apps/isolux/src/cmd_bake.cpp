@@ -108,6 +108,10 @@ void say_of_memory(const BakeResult& result, const Session& session) {
         result.sweeps == 0 ? "reflections are followed by paths" : "they are traced for the last reflection alone";
     session.say(fmt::format("{} rays are too many to keep: {}", it->second, instead));
   }
+  if (result.skipped.contains("sweeps_beyond_limit"))
+    session.warn(
+        "reflections have not settled: light that hardly fades, as of an albedo near 1 in a closed space, may be far "
+        "off");
   if (result.skipped.contains("reading_beyond_error"))
     session.say(
         "read from texels, reflections would be wrong by more than the error asked: they are followed by paths");

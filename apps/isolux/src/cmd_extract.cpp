@@ -57,7 +57,7 @@ std::vector<Rgb8> exact_colours(const IsoMesh& mesh, const Volume& volume, const
     TraceSettings settings = options.trace.settings();
     if (baked && !options.trace.bounces_given()) settings.bounces = light_bounces(*baked);
     if (!baked) return light_points(volume, scene, positions(mesh), settings, tracer, session.stages, session.run);
-    const IlluminationGrid& grid = options.light.of_side(*baked, options.side.or_outer());
+    const IlluminationGrid& grid = options.light.of_side(*baked, side_towards(*baked, scene.outer));
     const LightReader reader(volume, grid, TexelStorage::kBricks, session.run);
     return light_points(volume, scene, positions(mesh), settings, tracer, session.stages, session.run, reader);
   });
@@ -69,10 +69,11 @@ std::vector<Rgb8> exact_colours(const IsoMesh& mesh, const Volume& volume, const
   return colours;
 }
 
-std::vector<Rgb8> baked_colours(const IsoMesh& mesh, const Volume& volume, const LightFile& light,
+std::vector<Rgb8> baked_colours(const IsoMesh& mesh, const Volume& volume, const LightFile& light, OuterSide outer,
                                 const ExtractOptions& options, const Run& run) {
   const float isovalue = options.isovalue;
-  const LightReader reader(volume, options.light.of_side(light, options.side.or_outer()), TexelStorage::kBricks, run);
+  const IlluminationGrid& grid = options.light.of_side(light, side_towards(light, outer));
+  const LightReader reader(volume, grid, TexelStorage::kBricks, run);
   const SurfaceColour surface = surface_colour(light, isovalue);
   std::vector<Rgb8> colours;
   for (const Vec3f& p : positions(mesh)) {
@@ -86,8 +87,8 @@ NormalKind normal_kind(const std::string& name) {
   return name == "accurate" ? NormalKind::kAccurate : NormalKind::kGradient;
 }
 
-/// What the mesh's normals point to: the side whose light it shows, unless the user says otherwise. `lit`: the outer
-/// side of the light or the scene.
+/// What the mesh's normals point to and whose light it shows: the outer side of the light or the scene (`lit`), unless
+/// the user says otherwise.
 OuterSide facing(const ExtractOptions& options, OuterSide lit) {
   if (options.outer.empty()) return options.side.or_outer() == LevelSetSide::kInner ? opposite(lit) : lit;
   return options.outer == "higher" ? OuterSide::kHigher : OuterSide::kLower;
@@ -155,11 +156,14 @@ void extract(const Subject& subject, const BackendChoice& choice, const ExtractO
   if (!options.cap || mesh.n_faces() == 0) warn_outside_range(volume, options.isovalue, session);
   std::vector<Rgb8> colours;
   if (options.exact_light) {
-    colours =
-        exact_colours(mesh, *subject.floats, scene_of_side(scene, options.side.or_outer()), light, options, session);
+    Scene traced = scene;
+    traced.outer = outer;
+    traced.sides = LitSides::kOuter;
+    colours = exact_colours(mesh, *subject.floats, traced, light, options, session);
   } else if (light) {
-    colours =
-        session.timed("light", [&] { return baked_colours(mesh, *subject.floats, *light, options, session.run); });
+    warn_outside_light(*light, options.isovalue, session);
+    colours = session.timed("light",
+                            [&] { return baked_colours(mesh, *subject.floats, *light, outer, options, session.run); });
   }
   session.timed("write", [&] {
     write_atomically_by_name(options.output, [&](const std::string& path) { write_mesh(mesh, colours, path); });

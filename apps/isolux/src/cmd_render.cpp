@@ -47,7 +47,8 @@ void expose(Image& image, double stops) {
   for (Vec3f& p : image.pixels) p *= factor;
 }
 
-/// Baked light as a shader. A light of both sides shows each where it is, whatever --outer says.
+/// Baked light as a shader. A light of both sides shows each where it is, whatever --outer says; one that has another
+/// side than --outer says is refused.
 Shader baked_shader(const Volume& volume, const LightFile& light, const RenderOptions& options, OuterSide outer,
                     const Run& run) {
   const auto reading = [&](LevelSetSide side) -> LightAt {
@@ -58,7 +59,7 @@ Shader baked_shader(const Volume& volume, const LightFile& light, const RenderOp
   };
   const SurfaceColour colour = surface_colour(light, options.isovalue);
   if (!light.inner && options.side.or_outer() == LevelSetSide::kOuter)
-    return global_shader(reading(LevelSetSide::kOuter), colour);
+    return global_shader(reading(side_towards(light, outer)), colour);
   LightAt first = reading(LevelSetSide::kOuter);
   LightAt second = reading(LevelSetSide::kInner);
   if (outer != light_outer(light)) std::swap(first, second);
@@ -106,6 +107,7 @@ void run_render(const RenderOptions& options, Session& session) {
   std::optional<LightFile> light;
   if (options.light.given()) light = options.light.read(volume, session);
   warn_outside_range(volume, options.isovalue, session);
+  if (light && (mode == "global" || mode == "both")) warn_outside_light(*light, options.isovalue, session);
 
   const Vec3f albedo = light ? surface_colour(*light, options.isovalue).albedo : SurfaceColour{}.albedo;
   RenderSettings settings{

@@ -179,7 +179,10 @@ BakeSettings with_defaults(BakeSettings settings, const Stages& stages) {
     // Sites drawn by need are traced in two halves, the second where the first one's light changes: by paths.
     const bool keeps = settings.resampler.name == "direct" ||
                        (settings.resampler.name == "fit" && settings.texel_sites == TexelSites::kAll);
-    const bool iterated = settings.tracer.name.empty() && keeps && settings.trace.bounces != 0;
+    // Iterated, `wide` traces with its defaults: who wants anything else of a tracer gets paths.
+    const std::string tracer = stages.tracers.info({}).name;
+    const bool any_tracer = settings.tracer.name.empty() && settings.tracer.settings.empty() && tracer == "wide";
+    const bool iterated = any_tracer && keeps && settings.trace.bounces != 0;
     const bool by_error =
         settings.target_rmse > 0.0 && !(settings.target_seconds > 0.0) && settings.texel_sites == TexelSites::kAll;
     const BounceMethod iterating = by_error ? BounceMethod::kIteratedOrPaths : BounceMethod::kIterated;
@@ -199,6 +202,7 @@ BakeResult bake(const Volume& volume, const Scene& scene, const BakeSettings& gi
                 const Run& run) {
   BakeSettings settings = with_defaults(given, volume.lattice(), stages);
   const Stopwatch watch;
+  require_settings(settings);
   require_lightable(volume, settings);
   FoundSites found;  // by need and in parts they are found when they are wanted
   if (settings.texel_sites == TexelSites::kAll && !in_parts(volume, scene, settings, stages))

@@ -29,6 +29,7 @@ class PartBaker {
         run_(run),
         values_(value_range(volume)),
         texels_(texel_lattice(volume.lattice(), settings)),
+        all_(site_request(volume, settings, texels_, scene.outer, run)),
         sampler_(stages.samplers.create(settings.sampler.name, settings.sampler.settings)),
         tracer_(stages.tracers.create(settings.tracer.name, settings.tracer.settings)),
         resampler_(stages.resamplers.create(settings.resampler.name, settings.resampler.settings)),
@@ -37,14 +38,15 @@ class PartBaker {
   BakeResult bake() {
     const Stopwatch parting;
     const auto count = std::size_t(std::max(settings_.isovalue_parts, 0));
-    const std::vector<ValueRange> parts = isovalue_parts(volume_, request(settings_.isovalues), count, run_);
+    all_.values = values_;
+    const std::vector<ValueRange> parts = isovalue_parts(volume_, all_, count, run_);
     result_.seconds["sites"] += parting.seconds();
     result_.sites = 0;  // where all were found before
     for (std::size_t p = 0; p < parts.size(); ++p) {
       const auto all = double(parts.size());
       light(parts[p], part_of(run_, double(p) / all, double(p + 1) / all));
     }
-    count_sites(volume_, texels_, settings_, run_, result_);
+    count_sites(volume_, all_, settings_, result_);
     result_.least_rays = result_.most_rays = std::uint32_t(settings_.trace.rays);
     result_.rmse_estimate = error_.root();
     const Stopwatch watch;
@@ -55,16 +57,11 @@ class PartBaker {
   }
 
  private:
-  [[nodiscard]] SiteRequest request(const std::optional<ValueRange>& isovalues) const {
-    SiteRequest sites = site_request(settings_, texels_, scene_.outer);
-    sites.isovalues = isovalues;
-    sites.values = values_;
-    return sites;
-  }
-
   void light(const ValueRange& isovalues, const Run& run) {
     const Stopwatch finding;
-    Sites sites = sampler_->sample(volume_, request(isovalues), run);
+    SiteRequest request = all_;
+    request.isovalues = isovalues;
+    Sites sites = sampler_->sample(volume_, request, run);
     result_.seconds["sites"] += finding.seconds();
     if (sites.size() == 0) return;
     result_.sites += sites.size();
@@ -101,6 +98,7 @@ class PartBaker {
   const Run& run_;
   ValueRange values_;  ///< of the volume
   Lattice texels_;
+  SiteRequest all_;  ///< for all parts together
   std::unique_ptr<const SiteSampler> sampler_;
   std::unique_ptr<const FlatTracer> tracer_;
   std::unique_ptr<const Resampler> resampler_;

@@ -30,6 +30,28 @@ void require_memory(const Index3& texels) {
 
 }  // namespace
 
+void require_settings(const BakeSettings& settings) {
+  const auto at_least_0 = [](const char* what, double value) {
+    if (!(value >= 0.0 && std::isfinite(value)))
+      throw InvalidInput(fmt::format("{} = {}: allowed are numbers of at least 0", what, value));
+  };
+  at_least_0("texels_a_cell", settings.texels_a_cell);
+  at_least_0("sites_a_cell", settings.sites_a_cell);
+  at_least_0("target_rmse", settings.target_rmse);
+  at_least_0("target_seconds", settings.target_seconds);
+  at_least_0("isovalue_parts", settings.isovalue_parts);
+  if (settings.trace.rays < 1) throw InvalidInput(fmt::format("rays = {}: allowed is 1 and more", settings.trace.rays));
+  if (const auto& range = settings.isovalues; range && !(range->low <= range->high)) {
+    throw InvalidInput(
+        fmt::format("isovalue range {}:{}: its first number has to be at most its second", range->low, range->high));
+  }
+  const bool is_wide = settings.tracer.name == "wide" && settings.tracer.settings.empty();
+  if (iterates(settings) && settings.trace.bounces != 0 && !is_wide) {
+    throw InvalidInput(fmt::format(
+        "tracer {}: iterated reflections are traced by wide with its defaults; paths take any", settings.tracer.name));
+  }
+}
+
 void require_lightable(const Volume& volume, const BakeSettings& settings) {
   require_usable(volume);
   const std::optional<ValueRange>& wanted = settings.isovalues;
@@ -45,12 +67,15 @@ void require_lightable(const Volume& volume, const BakeSettings& settings) {
   require_memory(texel_lattice(volume.lattice(), settings).size);
 }
 
-SiteRequest site_request(const BakeSettings& settings, const Lattice& texels, OuterSide outer) {
-  return {.texels = texels,
-          .count = settings.samples,
-          .isovalues = settings.isovalues,
-          .outer = outer,
-          .gradient = settings.trace.gradient};
+SiteRequest site_request(const Volume& volume, const BakeSettings& settings, const Lattice& texels, OuterSide outer,
+                         const Run& run) {
+  SiteRequest request{.texels = texels, .count = settings.samples, .outer = outer, .gradient = settings.trace.gradient};
+  if (settings.sampler.name != "texels") {
+    request.isovalues = settings.isovalues;
+  } else if (settings.isovalues) {
+    request.only = std::make_shared<const TexelMask>(texels_read_by(volume, texels, *settings.isovalues, run));
+  }
+  return request;
 }
 
 int kept_rays_a_site(const BakeSettings& settings, std::size_t sites, int rays) {
@@ -90,6 +115,11 @@ void keep_first(std::size_t count, SampleSet& samples) {
 
 void finish_light(const Volume& volume, const SampleSet& samples, ResampledGrid partial, const Resampler& resampler,
                   const BakeSettings& settings, const Run& run, BakeResult& result) {
+  require_complete(partial.grid);
+  if (partial.lit.size() != partial.grid.lattice.count()) {
+    throw InvalidInput(fmt::format("resampler {}: it gave {} flags for {} texels", settings.resampler.name,
+                                   partial.lit.size(), partial.grid.lattice.count()));
+  }
   resampler.add_detail(volume, samples, partial, run);
   result.unlit_texels = std::size_t(std::count(partial.lit.begin(), partial.lit.end(), std::uint8_t(0)));
   result.light = fill_unlit(std::move(partial), run, fill_for(settings));

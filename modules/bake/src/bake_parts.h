@@ -27,12 +27,17 @@ inline constexpr int kFirstRays = 16;
 /// memory allows; 0 if that is too few to iterate over. Without bounces all: they have no links.
 [[nodiscard]] int kept_rays_a_site(const BakeSettings& settings, std::size_t sites, int rays);
 
+/// \throw InvalidInput for numbers that mean nothing, and for a tracer that iterated reflections would not use
+void require_settings(const BakeSettings& settings);
+
 /// \throw InvalidInput if the volume is not usable or constant, the isovalues asked for lie outside its values,
 /// or the texels take more memory than the machine has
 void require_lightable(const Volume& volume, const BakeSettings& settings);
 
-/// What a sampler is asked for, but for the number of sites a texel.
-[[nodiscard]] SiteRequest site_request(const BakeSettings& settings, const Lattice& texels, OuterSide outer);
+/// What a sampler is asked for, but for the number of sites a texel. Of known isovalues sites at texels are those that
+/// these level sets are read from; others lie on them. \throw Cancelled
+[[nodiscard]] SiteRequest site_request(const Volume& volume, const BakeSettings& settings, const Lattice& texels,
+                                       OuterSide outer, const Run& run);
 
 /// Of samples of all texels, what a resampler is shown where they are put into the grid part by part: all would take
 /// more than was saved.

@@ -13,13 +13,13 @@ FoundSites find_sites(const Volume& volume, OuterSide outer, const BakeSettings&
   const auto sampler = stages.samplers.create(settings.sampler.name, settings.sampler.settings);
   const Lattice texels = texel_lattice(volume.lattice(), settings);
   const Stopwatch watch;
-  SiteRequest request = site_request(settings, texels, outer);
+  SiteRequest request = site_request(volume, settings, texels, outer, run);
   request.per_texel = sites_a_texel(volume.lattice(), texels, settings);
   FoundSites found;
   BakeResult& result = found.begun;
   found.sites = sampler->sample(volume, request, run);
   result.sites = found.sites.size();
-  count_sites(volume, texels, settings, run, result);
+  count_sites(volume, request, settings, result);
   result.seconds["sites"] = watch.seconds();
   return found;
 }

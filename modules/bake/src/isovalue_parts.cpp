@@ -24,6 +24,7 @@ std::vector<float> some_isovalues(const Volume& volume, const SiteRequest& reque
   std::vector<Vec3f> positions;
   for (std::size_t look = 0; look < kLooks; ++look) {
     const auto texel = std::size_t(mix_bits(look) % request.texels.count());
+    if (request.only != nullptr && !(*request.only)[texel]) continue;
     positions.emplace_back(to_volume.world(Vec3(index_of(request.texels.size, texel))));
   }
   std::vector<float> values = make_sites(volume, std::move(positions), request, run).isovalues;

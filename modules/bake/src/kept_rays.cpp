@@ -66,6 +66,7 @@ KeptRays::KeptRays(const Volume& volume, const Scene& scene, const BakeSettings&
     throw InvalidInput("rays are kept of one side; a scene that lights both sides is one for bake()");
   resampler_ = stages.resamplers.create(settings_.resampler.name, settings_.resampler.settings);
   const Stopwatch watch;
+  require_settings(settings_);
   const int rays = has_target(settings_) ? kFirstRays : settings_.trace.rays;
   const int kept = has_target(settings_) ? rays : kept_rays_a_site(settings_, found.sites.size(), rays);
   if (kept == 0)
@@ -139,6 +140,7 @@ std::vector<std::uint32_t> KeptRays::wanting(const Solution& solution, double so
 }
 
 BakeResult KeptRays::light(const Scene& scene, const Run& run) {
+  require_kept();
   BakeResult result = std::exchange(begun_, {});
   SampleSet samples = trace_and_solve(scene, run, result);
   samples.sites = links_->sites();
@@ -149,6 +151,7 @@ BakeResult KeptRays::light(const Scene& scene, const Run& run) {
 double KeptRays::reading_error(const SampleSet& samples) const { return judge_ == nullptr ? 0.0 : judge_->of(samples); }
 
 BakeResult KeptRays::last_light(const Scene& scene, const Run& run) && {
+  require_kept();
   if (settings_.trace.bounces != 0) {
     const Stopwatch watch;
     judge_ = std::make_unique<const ReadingError>(volume_, scene, links_->sites(), settings_, run);
@@ -199,6 +202,10 @@ BakeResult KeptRays::light_without_places(const Scene& scene, const TexelPlaces&
   return result;
 }
 
+void KeptRays::require_kept() const {
+  if (links_ == nullptr) throw InvalidInput("the rays of last_light() are gone; light() keeps them");
+}
+
 void KeptRays::finish_links() {
   links_.reset();
   means_.reset();
@@ -222,6 +229,8 @@ SampleSet KeptRays::trace_and_solve(const Scene& scene, const Run& run, BakeResu
   add(result.counters, solution.counters);
   if (judge_ != nullptr) add(result.counters, judge_->counters());
   result.reading_error = reading_error(solution.samples);
+  if (settings_.trace.bounces == kAllBounces && solution.sweeps >= SolveSettings{}.most_sweeps)
+    result.skipped["sweeps_beyond_limit"] = 1;
   result.settings = settings_;
   result.least_rays = result.most_rays = std::uint32_t(settings_.trace.rays);
   if (const auto rays = links_->rays(); !rays.empty()) {

@@ -46,7 +46,7 @@ class ByNeed {
         run_(run),
         texels_(texels),
         channels_(is_grey(scene) ? 1 : 3),
-        sites_(volume, site_request(settings, texels, scene.outer), run),
+        sites_(volume, site_request(volume, settings, texels, scene.outer, run), run),
         pyramid_(texels, channels_, [this](std::span<const std::size_t> asked) {
           std::vector<std::uint8_t> lit;
           static_cast<void>(sites_.make(asked, &lit));

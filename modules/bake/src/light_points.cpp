@@ -1,6 +1,11 @@
+#include <fmt/format.h>
 #include <isolux/bake/light_points.h>
+#include <isolux/core/error.h>
 
 #include <algorithm>
+#include <cmath>
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
 #include <utility>
 
 #include "residual_filter.h"
@@ -18,9 +23,13 @@ struct SitesOfPoints {
 SitesOfPoints sites_of(const Volume& volume, const Scene& scene, std::span<const Vec3f> world_positions,
                        GradientKind gradient) {
   const TrilinearField field(volume);
+  const Vec3f last(volume.lattice().size - 1);
   SitesOfPoints result;
   for (std::size_t i = 0; i < world_positions.size(); ++i) {
-    const Vec3f position(volume.lattice().frame.index(Vec3(world_positions[i])));
+    if (!std::isfinite(glm::dot(world_positions[i], Vec3f(1.0f))))
+      throw InvalidInput(fmt::format("point {} of {}: its coordinates are not finite", i, world_positions.size()));
+    // Vertices on the box's faces are floats of the world: a rounding may put them outside, where no ray is blocked.
+    const Vec3f position = glm::clamp(Vec3f(volume.lattice().frame.index(Vec3(world_positions[i]))), Vec3f(0.0f), last);
     const Vec3 normal = field.normal(Vec3(position), scene.outer, gradient);
     if (normal == Vec3(0.0)) continue;
     result.sites.positions.push_back(position);

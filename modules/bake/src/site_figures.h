@@ -5,8 +5,7 @@
 namespace isolux {
 
 /// Says of sites at texels why others are none, in result.skipped. \pre result.sites \throw InvalidInput if there are
-/// none at all; Cancelled
-void count_sites(const Volume& volume, const Lattice& texels, const BakeSettings& settings, const Run& run,
-                 BakeResult& result);
+/// none at all
+void count_sites(const Volume& volume, const SiteRequest& request, const BakeSettings& settings, BakeResult& result);
 
 }  // namespace isolux

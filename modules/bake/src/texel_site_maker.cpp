@@ -1,5 +1,7 @@
 #include "texel_site_maker.h"
 
+#include <utility>
+
 #include "grid_index.h"
 
 namespace isolux {
@@ -9,7 +11,10 @@ Sites TexelSiteMaker::make(std::span<const std::size_t> texels, std::vector<std:
   std::vector<Vec3f> positions(texels.size());
   for (std::size_t i = 0; i < texels.size(); ++i)
     positions[i] = Vec3f(to_volume.world(Vec3(index_of(request_.texels.size, texels[i]))));
-  Sites sites = make_sites(volume_, positions, request_, run_);
+  std::vector<Vec3f> wanted;
+  for (std::size_t i = 0; i < texels.size(); ++i)
+    if (request_.only == nullptr || (*request_.only)[texels[i]]) wanted.push_back(positions[i]);
+  Sites sites = make_sites(volume_, std::move(wanted), request_, run_);
   if (lit == nullptr) return sites;
   // Those without a site were left out, the order kept; no two texels share a place.
   lit->assign(texels.size(), 0);

@@ -17,6 +17,8 @@ class Anderson {
   /// Replaces x by a better one, given g(x). Returns the error of g(x) as the changes so far suggest it: its root mean
   /// square over that of g(x). What `image` holds afterwards is of no value, but memory that the next one may use.
   double step(std::vector<float>& x, std::vector<float>& image);
+  /// g(x) of the last step: what a step without acceleration would have given.
+  [[nodiscard]] const std::vector<float>& last_image() const { return past_.back().image; }
 
  private:
   /// g(x) and g(x) - x of one step.

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <utility>
 
 #include "anderson.h"
@@ -18,8 +19,8 @@ namespace {
 constexpr std::size_t kSitesABlock = 8192;
 /// From this albedo on reflections hardly fade, and what an acceleration overshoots stays.
 constexpr float kNearlyWhite = 0.999f;
-/// Of its light, what a site must lose to bound that of all: whoever loses less is in a closed pocket.
-constexpr float kLeastLost = 1e-3f;
+/// Of its light, what a site must lose for that to be more than rounding.
+constexpr float kLeastLost = 1e-5f;
 
 /// Whether no value differs by more than a unit in the last place of the largest.
 bool differ_by_rounding(const std::vector<float>& one, const std::vector<float>& other) {
@@ -101,11 +102,17 @@ TargetLight LightLinks::Solver::before_last(const SolveSettings& settings, std::
     ++solution.sweeps;
     reflect(at_targets(e_), next);
     solution.change = anderson.step(e_, next);
-    for (std::size_t i = 0; i < e_.size() && !most.empty(); ++i) e_[i] = std::clamp(e_[i], 0.0f, most[i % channels_]);
+    if (!most.empty()) clamp_light(most, anderson.last_image());
     if (run_.progress) run_.progress("bounces", double(solution.sweeps) / double(settings.most_sweeps));
     if (solution.change <= settings.tolerance) break;
   }
+  if (run_.progress) run_.progress("bounces", 1.0);
   return at_targets(e_);
+}
+
+void LightLinks::Solver::clamp_light(const std::vector<float>& most, const std::vector<float>& image) {
+  for (std::size_t i = 0; i < e_.size(); ++i)
+    if (!(e_[i] >= 0.0f && e_[i] <= most[i % channels_])) e_[i] = std::clamp(image[i], 0.0f, most[i % channels_]);
 }
 
 bool LightLinks::Solver::is_nearly_white() const {
@@ -120,8 +127,10 @@ std::vector<float> LightLinks::Solver::most_light() {
   reflect(at_targets(std::vector<float>(straight_.size(), 1.0f)), of_one);
   std::vector<float> most(channels_, 0.0f);
   for (std::size_t i = 0; i < straight_.size(); ++i) {
+    if (!(straight_[i] > 0.0f)) continue;  // a closed pocket without light bounds nothing
     const float lost = 1.0f - (of_one[i] - straight_[i]);
-    if (lost > kLeastLost) most[i % channels_] = std::max(most[i % channels_], straight_[i] / lost);
+    const float bound = lost > kLeastLost ? straight_[i] / lost : std::numeric_limits<float>::max();
+    most[i % channels_] = std::max(most[i % channels_], bound);
   }
   return most;
 }

@@ -45,6 +45,8 @@ class LightLinks::Solver {
   /// What no site's light exceeds, by channel: e_i is what comes straight and at most the part that hits times the most
   /// light there is, so the most is at most the largest of straight_i / (1 - that part). One sweep. \pre reads_sites()
   [[nodiscard]] std::vector<float> most_light();
+  /// Takes `image`, found without acceleration, where this has left e_ outside 0 to `most`.
+  void clamp_light(const std::vector<float>& most, const std::vector<float>& image);
   /// The light without reflections and what one reflection of `light` adds, into `next`, whatever it holds.
   void reflect(const TargetLight& light, std::vector<float>& next) const;
   /// As the targets show it. \pre `e` lives as long as what is returned

@@ -1,6 +1,7 @@
 #include "texel_near_field.h"
 
 #include <isolux/core/parallel.h>
+#include <isolux/core/texel_mask.h>
 #include <isolux/resample/openness.h>
 
 #include <algorithm>
@@ -10,7 +11,6 @@
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
-#include <numeric>
 #include <optional>
 #include <vector>
 
@@ -194,19 +194,21 @@ void estimate_near_field(const Volume& volume, double outwards, ResampledGrid& t
 void take_off_near_field(const Volume& volume, IlluminationGrid& light, const Run& run) {
   const NearField near_field(volume);
   const Index3& size = light.lattice.size;
-  const std::optional<ValueRange>& lit = light.detail.isovalues;
+  std::optional<TexelMask> only;
+  if (light.detail.isovalues) only = texels_read_by(volume, light.lattice, *light.detail.isovalues, run);
   const auto channels = std::size_t(light.channels);
   parallel_blocks(std::size_t(size.z) * std::size_t(size.y), 8, run, "", [&](const Block& block) {
     TexelRow row(near_field, light.lattice);
-    std::vector<int> columns(static_cast<std::size_t>(size.x));
+    std::vector<int> columns;
     std::vector<Vec3> sums;
     for (std::size_t r = block.begin; r < block.end; ++r) {
       const int j = int(r % std::size_t(size.y));
       const int k = int(r / std::size_t(size.y));
-      columns.resize(std::size_t(size.x));
-      std::iota(columns.begin(), columns.end(), 0);
+      columns.clear();
+      for (int i = 0; i < size.x; ++i)
+        if (!only || (*only)[light.lattice.offset(i, j, k)]) columns.push_back(i);
       row.look(j, k, columns);
-      row.keep_lit(lit, columns);
+      row.keep_lit(columns);
       sums.assign(columns.size(), Vec3(0.0));
       for (const NearFieldTerm& term : light.detail.near_field) {
         row.find_openness(double(term.step));

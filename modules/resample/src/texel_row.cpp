@@ -16,11 +16,9 @@ void TexelRow::look(int j, int k, std::span<const int> columns) {
   }
 }
 
-void TexelRow::keep_lit(const std::optional<ValueRange>& isovalues, std::vector<int>& columns) {
+void TexelRow::keep_lit(std::vector<int>& columns) {
   std::size_t kept = 0;
   for (std::size_t n = 0; n < texels_.size(); ++n) {
-    const auto isovalue = float(texels_[n].isovalue);
-    if (isovalues && !(isovalue >= isovalues->low && isovalue <= isovalues->high)) continue;
     const bool may_be_flat = samples_.least[n] == samples_.largest[n];
     if (may_be_flat && near_field_.field().is_flat_around(texels_[n].index)) continue;
     texels_[kept] = texels_[n];

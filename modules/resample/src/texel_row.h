@@ -4,7 +4,6 @@
 #include <isolux/core/illumination_grid.h>
 
 #include <cstddef>
-#include <optional>
 #include <span>
 #include <vector>
 
@@ -19,9 +18,8 @@ class TexelRow {
 
   /// Looks at the texels (i, j, k) of those columns i: from here on they are called by their place in the list.
   void look(int j, int k, std::span<const int> columns);
-  /// Leaves those with an isovalue within the range, or any, that are not in a flat part of the volume; the same of
-  /// their columns.
-  void keep_lit(const std::optional<ValueRange>& isovalues, std::vector<int>& columns);
+  /// Leaves those that are not in a flat part of the volume; the same of their columns.
+  void keep_lit(std::vector<int>& columns);
   [[nodiscard]] double isovalue(std::size_t n) const { return texels_[n].isovalue; }
   [[nodiscard]] const NearField::Ahead& ahead(std::size_t n) const { return texels_[n].ahead; }
 

@@ -9,3 +9,4 @@
 #include <isolux/bake/light_points.h>
 #include <isolux/bake/scene_file.h>
 #include <isolux/bake/stages.h>
+#include <isolux/core/error.h>

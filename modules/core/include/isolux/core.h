@@ -17,5 +17,6 @@
 #include <isolux/core/sample_set.h>
 #include <isolux/core/spread_labels.h>
 #include <isolux/core/stopwatch.h>
+#include <isolux/core/texel_mask.h>
 #include <isolux/core/vec.h>
 #include <isolux/core/volume.h>

@@ -74,8 +74,11 @@ std::vector<std::size_t> choose_probes(const Sites& sites) {
   constexpr std::size_t kOneOf = 64;
   const std::size_t step = std::clamp<std::size_t>(sites.size() / kEnough, 1, kOneOf);
   std::vector<std::size_t> probes;
-  for (std::size_t i = 0; i < sites.size(); i += step)
+  // Anywhere in its share: of a grid whose rows are as long as shares all would lie in one plane.
+  for (std::size_t share = 0; share < sites.size(); share += step) {
+    const std::size_t i = share + std::size_t(mix_bits(share) % std::min(step, sites.size() - share));
     if (sites.normals[i] != Vec3f(0.0f)) probes.push_back(i);
+  }
   return probes;
 }
 
@@ -92,13 +95,21 @@ Sites sites_of(const Sites& sites, std::span<const std::size_t> numbers) {
 void calibrate_variance(SampleSet& samples, std::span<const std::size_t> probes, const SampleSet& again,
                         std::span<const std::uint32_t> rays) {
   constexpr std::size_t kEnough = 64;
+  constexpr double kSeen = 0.5;
   struct Tally {
     double expected = 0.0;
     double found = 0.0;
     std::size_t count = 0;
+    [[nodiscard]] double mean_expected() const { return expected / double(std::max<std::size_t>(count, 1)); }
     [[nodiscard]] double scale() const { return expected > 0.0 ? found / expected : 1.0; }
   };
   const auto channels = std::size_t(samples.channels);
+  Tally everywhere;
+  for (const float variance : samples.variance) {
+    if (variance == kUnknownVariance) continue;
+    everywhere.expected += double(variance);
+    ++everywhere.count;
+  }
   Tally all;
   std::map<std::uint32_t, Tally> by_rays;
   for (std::size_t k = 0; k < probes.size(); ++k) {
@@ -115,6 +126,8 @@ void calibrate_variance(SampleSet& samples, std::span<const std::size_t> probes,
       ++tally->count;
     }
   }
+  // Noise of a few sites, as in a small sun's penumbra, that the probes have missed: they say nothing of it.
+  if (all.mean_expected() < kSeen * everywhere.mean_expected()) return;
   for (std::size_t site = 0; site < samples.variance.size(); ++site) {
     if (samples.variance[site] == kUnknownVariance) continue;
     const auto own = by_rays.find(rays.empty() ? 0 : rays[site]);

@@ -48,12 +48,15 @@ class TexelSampler final : public SiteSampler {
     TexelRows::Scratch scratch;
     std::vector<Vec3f> positions;
     for (std::size_t row = begin; row < end; ++row) {
+      const auto add = [&](int x) {
+        if (request.only == nullptr || (*request.only)[row * std::size_t(request.texels.size.x) + std::size_t(x)])
+          positions.push_back(rows.position(row, x));
+      };
       if (request.isovalues) {
         // Of a range most texels may lie outside: they cost no more than a look at their isovalue.
-        for (const int x : rows.columns_within(row, *request.isovalues, scratch))
-          positions.push_back(rows.position(row, x));
+        for (const int x : rows.columns_within(row, *request.isovalues, scratch)) add(x);
       } else {
-        for (int x = 0; x < request.texels.size.x; ++x) positions.push_back(rows.position(row, x));
+        for (int x = 0; x < request.texels.size.x; ++x) add(x);
       }
       if (positions.size() < kPositionsAtOnce && row + 1 < end) continue;
       maker.append(positions, sites);

@@ -1,6 +1,7 @@
 // The front page of volume-io: volumes and light from and to files.
 #pragma once
 
+#include <isolux/core/error.h>
 #include <isolux/core/registry.h>
 #include <isolux/volume_io/analytic_fields.h>
 #include <isolux/volume_io/atomic_file.h>

@@ -104,7 +104,8 @@ struct BakeResult {
   /// What was known without tracing, by reason, of sites at texels: sites_flat (no gradient, hence no normal),
   /// sites_outside_iso_range, texels_predicted. And links_beyond_memory, rays that were not kept
   /// (BakeSettings::most_link_bytes); rounds_beyond_memory, 1 where target_rmse was not reached for that;
-  /// reading_beyond_error, 1 where reflections were followed by paths to reach it (kIteratedOrPaths).
+  /// reading_beyond_error, 1 where reflections were followed by paths to reach it (kIteratedOrPaths);
+  /// sweeps_beyond_limit, 1 where iterated reflections had not settled when they ended.
   std::map<std::string, std::uint64_t> skipped;
   std::map<std::string, double> seconds;  ///< by stage: sites, trace, bounces (of kIterated), resample
 };

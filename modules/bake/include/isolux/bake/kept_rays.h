@@ -16,7 +16,7 @@ class ReadingError;
 class TexelPlaces;
 
 /// A bake whose rays are kept: what bake() uses for BounceMethod::kIterated, and a way to light the same volume again
-/// after albedo, emission or environment changed, without tracing it again.
+/// after albedo, emission or environment changed, without tracing it again. Not for use from several threads at once.
 class KeptRays {
  public:
   /// Traces settings.trace.rays a site, or a first few where settings name an error or a time. Of the scene only the
@@ -27,6 +27,10 @@ class KeptRays {
   /// The same from sites that are found. \pre with_defaults(settings)
   KeptRays(const Volume& volume, const Scene& scene, const BakeSettings& settings, FoundSites found,
            const Stages& stages, const Run& run);
+  KeptRays(Volume&& volume, const Scene& scene, const BakeSettings& settings, const Stages& stages,
+           const Run& run) = delete;
+  KeptRays(Volume&& volume, const Scene& scene, const BakeSettings& settings, FoundSites found, const Stages& stages,
+           const Run& run) = delete;
   KeptRays(const KeptRays&) = delete;
   KeptRays& operator=(const KeptRays&) = delete;
   ~KeptRays();
@@ -41,8 +45,9 @@ class KeptRays {
   /// (BakeResult::reading_error); light() leaves that at 0.
   [[nodiscard]] BakeResult last_light(const Scene& scene, const Run& run) &&;
 
-  [[nodiscard]] std::uint64_t rays() const { return links_->counters().rays; }
-  [[nodiscard]] std::size_t bytes() const { return links_->bytes(); }
+  /// 0 once they are gone.
+  [[nodiscard]] std::uint64_t rays() const { return links_ != nullptr ? links_->counters().rays : 0; }
+  [[nodiscard]] std::size_t bytes() const { return links_ != nullptr ? links_->bytes() : 0; }
 
  private:
   /// e at the links' sites, without these, and what finding it took.
@@ -52,6 +57,8 @@ class KeptRays {
   [[nodiscard]] bool can_do_without_places(const Scene& scene) const;
   /// The light of a scene for which they are let go: `places` says where they were.
   [[nodiscard]] BakeResult light_without_places(const Scene& scene, const TexelPlaces& places, const Run& run);
+  /// \throw InvalidInput if rays are gone
+  void require_kept() const;
   /// Lets go what is kept.
   void finish_links();
   /// The light that reflections read.

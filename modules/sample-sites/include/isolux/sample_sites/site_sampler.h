@@ -4,18 +4,21 @@
 #include <isolux/core/registry.h>
 #include <isolux/core/run.h>
 #include <isolux/core/sample_set.h>
+#include <isolux/core/texel_mask.h>
 
 #include <cstddef>
+#include <memory>
 #include <optional>
 
 namespace isolux {
 
 struct SiteRequest {
-  Lattice texels{};                       ///< the grid that the samples are for
-  std::size_t count = 0;                  ///< sites wanted; 0: per_texel. Samplers that sit at texels ignore both
-  double per_texel = 1.0;                 ///< sites a texel of what can be lit
-  std::optional<ValueRange> isovalues{};  ///< sites only on level sets within
-  std::optional<ValueRange> values{};     ///< of the whole volume, where known: saves a pass
+  Lattice texels{};                         ///< the grid that the samples are for
+  std::size_t count = 0;                    ///< sites wanted; 0: per_texel. Samplers that sit at texels ignore both
+  double per_texel = 1.0;                   ///< sites a texel of what can be lit
+  std::optional<ValueRange> isovalues{};    ///< sites only on level sets within
+  std::shared_ptr<const TexelMask> only{};  ///< of `texels`; of samplers that sit at them, sites at these alone
+  std::optional<ValueRange> values{};       ///< of the whole volume, where known: saves a pass
   OuterSide outer = OuterSide::kLower;
   GradientKind gradient = GradientKind::kCentralDifferences;
 };
