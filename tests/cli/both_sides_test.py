@@ -78,6 +78,16 @@ class BothSides(CommandLineTest):
                     # Albedo .8 is code 231; 16 rays may lose one to a crease of the trilinear ball (code 224).
                     self.assertTrue(all(224 <= c <= 231 if way > 0 else c == 0 for c in code), code)
 
+    def test_follow_what_is_said_to_be_outside(self):
+        # Inside a closed ball no light is.
+        self.bake("--scene", "both.json", volume="gen:sphere:24")
+        for light in (("--exact-light", "--bounces", 0, "--rays", 16), ("--light", "both.nrrd"),
+                      ("--light", "both.nrrd", "--exact-light", "--rays", 16)):
+            self.succeed("extract", "gen:sphere:24", "--iso", -0.3, "-o", "mesh.ply", "--outer", "higher", *light)
+            for x, y, z, nx, ny, nz, *code in ply(self.path("mesh.ply"))[1]:
+                self.assertLess(nx * (x - 0.5) + ny * (y - 0.5) + nz * (z - 0.5), 0)
+                self.assertEqual(code, [0, 0, 0])
+
     def test_are_rendered_where_they_are_seen(self):
         self.bake("--scene", "both.json", volume="gen:gyroid:16")
         self.bake(out="outer.nrrd", volume="gen:gyroid:16")
@@ -104,6 +114,9 @@ class BothSides(CommandLineTest):
         self.fail(1, "probe", "gen:sphere:16", "--points", "points.csv", "-o", "out.csv", *light, says=says)
         self.fail(1, "extract", "gen:sphere:16", "--iso", -0.3, "-o", "out.ply", *light, says=says)
         self.fail(1, "render", "gen:sphere:16", "--iso", -0.3, "-o", "out.png", *light, says=says)
+        turned = ("--light", "outer.nrrd", "--outer", "higher")
+        self.fail(1, "extract", "gen:sphere:16", "--iso", -0.3, "-o", "out.ply", *turned, says=says)
+        self.fail(1, "render", "gen:sphere:16", "--iso", -0.3, "-o", "out.png", *turned, says=says)
         self.fail(2, "extract", "gen:sphere:16", "--iso", -0.3, "-o", "out.ply", "--side", "inner", says=("--side", "--light"))
         self.write("left.json", '{"sides": "left"}')
         self.fail(1, "bake", "gen:sphere:16", "-o", "light.nrrd", "--scene", "left.json", says=("left.json.sides: 'left'", "outer, both"))

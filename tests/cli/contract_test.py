@@ -135,6 +135,16 @@ class Bake(CommandLineTest):
             self.assertAlmostEqual(values[4], 1.0, delta=1e-5)       # no ray of a convex level set meets it again
         self.assertTrue(rows[3].endswith("nan,nan"))
 
+    def test_a_light_of_a_range_says_where_it_is_read_beyond(self):
+        self.bake("--bounces", 0, "--iso-range", "-0.35:-0.25")
+        self.write("points.csv", "0.5,0.5,0.8\n0.5,0.5,0.6\n9,9,9\n")
+        done = self.succeed("probe", "gen:sphere:16", "--light", "light.nrrd", "--points", "points.csv", "-o", "out.csv")
+        self.assertIn("1 of 3 points lie on level sets outside the range", done.stderr)
+        for command in (("extract", "-o", "m.ply"), ("render", "-o", "i.png", "--size", "8x8")):
+            for isovalue, words in ((-0.3, 0), (-0.1, 1)):
+                done = self.succeed(command[0], "gen:sphere:16", "--light", "light.nrrd", "--iso", isovalue, *command[1:])
+                self.assertEqual(done.stderr.count("outside the range -0.35 to -0.25"), words, done.stderr)
+
     def test_probe_reads_the_tables_that_others_write(self):
         self.bake("--bounces", 0)
         tables = {"plain": "0.5,0.5,0.8\n", "byte order mark": "\ufeff0.5,0.5,0.8\n", "signs": "+.5,+5e-1,.8\n",

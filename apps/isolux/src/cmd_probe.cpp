@@ -65,7 +65,9 @@ void run_probe(const ProbeOptions& options, Session& session) {
   const TrilinearField field(volume);
   const LightReader reader(volume, options.light.of_side(light, options.side.or_outer()), TexelStorage::kBricks,
                            session.run);
+  const std::optional<ValueRange>& lit = light.grid.detail.isovalues;
   std::size_t outside = 0;
+  std::size_t unlit = 0;
   session.timed("write", [&] {
     write_atomically(options.output, [&](std::ostream& out) {
       out << (light.grid.channels == 3 ? "x,y,z,isovalue,e_r,e_g,e_b\n" : "x,y,z,isovalue,e\n");
@@ -73,8 +75,10 @@ void run_probe(const ProbeOptions& options, Session& session) {
         const auto index = box.inside(p);
         if (!index) ++outside;
         const double nan = std::numeric_limits<double>::quiet_NaN();
+        const double isovalue = index ? field.value(*index) : nan;
+        unlit += std::size_t(lit && (isovalue < double(lit->low) || isovalue > double(lit->high)));
         const Vec3f e = index ? reader.at_index(*index) : Vec3f(float(nan));
-        fmt::print(out, "{},{},{},{:.9g}", p.x, p.y, p.z, index ? field.value(*index) : nan);
+        fmt::print(out, "{},{},{},{:.9g}", p.x, p.y, p.z, isovalue);
         for (int c = 0; c < light.grid.channels; ++c) fmt::print(out, ",{:.9g}", e[c]);
         out << '\n';
       }
@@ -82,6 +86,11 @@ void run_probe(const ProbeOptions& options, Session& session) {
   });
   session.report["points"] = points.size();
   session.report["points_outside"] = outside;
+  session.report["points_outside_iso_range"] = unlit;
+  if (unlit > 0)
+    session.warn(fmt::format("{} of {} points lie on level sets outside the range {} to {} that the light is of: what is "
+                             "read there is not their light",
+                             unlit, points.size(), lit->low, lit->high));
   if (outside > 0)
     session.warn(fmt::format("{} of {} points lie outside the volume's box; their isovalue and light are nan", outside,
                              points.size()));
