@@ -97,7 +97,8 @@ FilteredResiduals filter_residuals(const Sites& sites, std::span<const float> re
         result.residuals[s * channels + c] = float(mean + kept * (double(residuals[s * channels + c]) - mean));
       }
       const double in_mean = sums.squared_weight / (sums.weight * sums.weight);
-      result.variance[s] = float(noise * (kept * kept + (1.0 - kept * kept) * in_mean));
+      const double smoothed_away = (1.0 - kept) * (1.0 - kept) * std::max(0.0, spread - noise);
+      result.variance[s] = float(noise * (kept * kept + (1.0 - kept * kept) * in_mean) + smoothed_away);
     }
   });
   return result;

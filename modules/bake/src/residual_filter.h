@@ -14,7 +14,7 @@ namespace isolux {
 /// statistics", PAMI 1980). Around means within 1.5 grid steps and of a normal within 60 degrees.
 struct FilteredResiduals {
   std::vector<float> residuals;  ///< in the order given, channel fastest
-  std::vector<float> variance;   ///< of what is left of the noise; one a site
+  std::vector<float> variance;   ///< of what is left of the noise and of what was smoothed away with it; one a site
 };
 
 /// `residuals`: channels a site; `variance`: of each site's residual, mean over the channels. The same bits for any
