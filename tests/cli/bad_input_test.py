@@ -27,6 +27,8 @@ class BadCommandLine(CommandLineTest):
             (("bake", "gen:sphere:8", "-o", "l.nrrd", "--sites", "need"), "--rmse"),
             (("bake", "gen:sphere:8", "-o", "l.nrrd", "--iso-range", "5:1"), "5:1"),
             (("bake", "gen:sphere:8", "-o", "l.nrrd", "--iso-range", "nan:1"), "nan"),
+            (("info", "gen:sphere:8", "--set-reader", "nrd.key=1"), "nrrd"),
+            (("info", "gen:sphere:8", "--set-reader", "nrrd.key=1"), "key"),
             (("bake", "gen:sphere:8", "-o", "l.nrrd", "--lattice", "edges"), "edges"),
             (("bake", "gen:sphere:8", "-o", "l.nrrd", "--quality", "best"), "best"),
             (("bake", "gen:sphere:8", "-o", "l.nrrd", "--rmse", "0"), "--rmse"),

@@ -65,9 +65,10 @@ BakeSettings bake_settings(const BakeOptions& options, const Stages& stages) {
   settings.target_rmse = options.rmse;
   settings.target_seconds = options.time;
   settings.wants_error_grid = !options.error_grid.empty();
-  apply_settings(options.set, {{"sampler", &settings.sampler.settings},
-                               {"tracer", &settings.tracer.settings},
-                               {"resampler", &settings.resampler.settings}});
+  apply_settings("--set", options.set,
+                 {{"sampler", &settings.sampler.settings},
+                  {"tracer", &settings.tracer.settings},
+                  {"resampler", &settings.resampler.settings}});
   settings = with_defaults(std::move(settings), stages);
   require_choice(stages.samplers, settings.sampler);
   require_choice(stages.tracers, settings.tracer);

@@ -174,7 +174,7 @@ void extract(const Subject& subject, const BackendChoice& choice, const ExtractO
 void run_extract(const ExtractOptions& options, Session& session) {
   require_output(options.output);
   BackendChoice choice{options.backend, {}};
-  apply_settings(options.set, {{"extractor", &choice.settings}});
+  apply_settings("--set", options.set, {{"extractor", &choice.settings}});
   require_choice(session.stages.extractors, choice);
   require_choice(session.stages.tracers, {options.trace.tracer(), {}});
   const bool lit = options.light.given() || options.exact_light;

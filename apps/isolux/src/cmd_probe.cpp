@@ -88,9 +88,10 @@ void run_probe(const ProbeOptions& options, Session& session) {
   session.report["points_outside"] = outside;
   session.report["points_outside_iso_range"] = unlit;
   if (unlit > 0)
-    session.warn(fmt::format("{} of {} points lie on level sets outside the range {} to {} that the light is of: what is "
-                             "read there is not their light",
-                             unlit, points.size(), lit->low, lit->high));
+    session.warn(
+        fmt::format("{} of {} points lie on level sets outside the range {} to {} that the light is of: what is "
+                    "read there is not their light",
+                    unlit, points.size(), lit->low, lit->high));
   if (outside > 0)
     session.warn(fmt::format("{} of {} points lie outside the volume's box; their isovalue and light are nan", outside,
                              points.size()));

@@ -94,14 +94,14 @@ int parse_bounces(const std::string& text) {
   return *value;
 }
 
-void apply_settings(const std::vector<std::string>& texts,
+void apply_settings(const std::string& option, const std::vector<std::string>& texts,
                     const std::vector<std::pair<std::string, Settings*>>& targets) {
   std::vector<std::string> names;
   for (const auto& [name, settings] : targets) names.push_back(name);
   for (const auto& text : texts) {
     const auto equals = text.find('=');
     if (equals == std::string::npos || equals == 0) {
-      throw UsageError(fmt::format("--set '{}': allowed is {}key=value", text, targets.size() > 1 ? "stage." : ""));
+      throw UsageError(fmt::format("{} '{}': allowed is {}key=value", option, text, targets.size() > 1 ? "NAME." : ""));
     }
     std::string key = text.substr(0, equals);
     Settings* settings = targets.size() == 1 ? targets[0].second : nullptr;
@@ -114,7 +114,8 @@ void apply_settings(const std::vector<std::string>& texts,
       }
     }
     if (settings == nullptr)
-      throw UsageError(fmt::format("--set '{}': the stage is one of {}", text, fmt::join(names, ", ")));
+      throw UsageError(
+          fmt::format("{} '{}': the name before the point is one of {}", option, text, fmt::join(names, ", ")));
     (*settings)[key] = text.substr(equals + 1);
   }
 }

@@ -21,9 +21,9 @@ namespace isolux {
 /// "all" or a whole number of at least 0
 [[nodiscard]] int parse_bounces(const std::string& text);
 
-/// Puts `--set stage.key=value` where it belongs; `stage` is one of the names in `targets`, and may be left out if
-/// there is one.
-void apply_settings(const std::vector<std::string>& texts,
+/// Puts the `NAME.key=value` of an option where they belong; NAME is one of the names in `targets`, and may be left out
+/// if there is one.
+void apply_settings(const std::string& option, const std::vector<std::string>& texts,
                     const std::vector<std::pair<std::string, Settings*>>& targets);
 
 }  // namespace isolux

@@ -8,6 +8,7 @@
 #include <optional>
 #include <variant>
 
+#include "bake_options.h"
 #include "parse.h"
 #include "usage.h"
 
@@ -25,11 +26,20 @@ void VolumeOptions::add_to(CLI::App& command) {
   command.add_option("--replace-nonfinite", replacement_, "value for voxels that are infinite or not a number")
       ->check(finite_number())
       ->type_name("VALUE");
+  command.add_option("--set-reader", set_, "an option of a reader: NAME.key=value, such as itk.time_limit=3600")
+      ->check(key_and_value())
+      ->type_name("NAME.key=value");
   command.add_flag("--allow-external-data", allow_external_, "a header may name a data file outside its folder");
 }
 
-ReadOptions VolumeOptions::read_options() const {
+ReadOptions VolumeOptions::read_options(const Session& session) const {
   ReadOptions options;
+  std::vector<std::pair<std::string, Settings*>> targets;
+  for (const auto& info : session.stages.readers.backends())
+    targets.emplace_back(info.name, &options.settings[info.name]);
+  apply_settings("--set-reader", set_, targets);
+  for (const auto& [name, settings] : options.settings)
+    if (!settings.empty()) require_choice(session.stages.readers, {name, settings});
   options.allow_external_data = allow_external_;
   options.big_endian = endian_ == "big";
   if (dims_.empty() != type_.empty()) throw UsageError("--dims and --type go together: a headerless file needs both");
@@ -54,7 +64,7 @@ ReadOptions VolumeOptions::read_options() const {
 }
 
 StoredVolume VolumeOptions::read_in(VoxelForm form, Session& session) const {
-  const ReadOptions options = read_options();
+  const ReadOptions options = read_options(session);
   std::optional<float> replacement;
   if (!replacement_.empty()) replacement = float(parse_numbers("--replace-nonfinite", replacement_, 1)[0]);
   StoredVolume volume = session.timed("read", [&] {

@@ -5,6 +5,7 @@
 
 #include <CLI/App.hpp>
 #include <string>
+#include <vector>
 
 #include "session.h"
 
@@ -24,7 +25,7 @@ class VolumeOptions {
   [[nodiscard]] Volume read(Session& session) const;
 
  private:
-  [[nodiscard]] ReadOptions read_options() const;
+  [[nodiscard]] ReadOptions read_options(const Session& session) const;
   [[nodiscard]] StoredVolume read_in(VoxelForm form, Session& session) const;
 
   std::string source_;
@@ -33,6 +34,7 @@ class VolumeOptions {
   std::string spacing_;
   std::string endian_ = "little";
   std::string replacement_;
+  std::vector<std::string> set_;
   bool allow_external_ = false;
 };
 

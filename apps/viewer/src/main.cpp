@@ -110,7 +110,7 @@ struct Words {
     result.viewer.exact_light = exact_light;
     result.viewer.help = volume.source().empty();
     result.viewer.extractor.name = backend;
-    apply_settings(set, {{"extractor", &result.viewer.extractor.settings}});
+    apply_settings("--set", set, {{"extractor", &result.viewer.extractor.settings}});
     require_choice(session.stages.extractors, result.viewer.extractor);
     result.viewer.run = session.run;
     if (!scene.empty()) result.viewer.scene = read_scene(scene);

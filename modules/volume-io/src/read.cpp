@@ -17,6 +17,8 @@ constexpr std::string_view kFormats =
 StoredVolume read_in_form(const std::string& source, ReadOptions options, VoxelForm form, const Run& run,
                           const Registry<VolumeReader>& registry) {
   options.form = form;
+  for (const auto& [name, settings] : options.settings)
+    if (!settings.empty()) static_cast<void>(registry.info(name));  // there is nobody else to say that it is not there
   std::unique_ptr<VolumeReader> best;
   int best_claim = 0;
   std::string missing;
@@ -25,7 +27,8 @@ StoredVolume read_in_form(const std::string& source, ReadOptions options, VoxelF
       missing += fmt::format("; {}: {}", info.name, info.unavailable);
       continue;
     }
-    auto reader = registry.create(info.name);
+    const auto settings = options.settings.find(info.name);
+    auto reader = registry.create(info.name, settings != options.settings.end() ? settings->second : Settings{});
     const int claim = reader->claims(source, options);
     if (claim <= best_claim) continue;
     best = std::move(reader);

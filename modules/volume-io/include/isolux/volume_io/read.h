@@ -6,7 +6,8 @@ namespace isolux {
 
 /// Reads a volume argument in floats: `gen:NAME[:N]`, a file told by content and then by extension, or a folder of
 /// DICOM slices; with whichever reader of `registry` claims it most surely. `run.seed` seeds `gen:noise`. \throw
-/// IoError, InvalidInput as VolumeReader::read; InvalidInput naming the known formats if nobody claims it.
+/// IoError, InvalidInput as VolumeReader::read; InvalidInput naming the known formats if nobody claims it, or for
+/// ReadOptions::settings that a reader does not take.
 [[nodiscard]] Volume read_volume(const std::string& source, const ReadOptions& options, const Run& run,
                                  const Registry<VolumeReader>& registry);
 /// With the readers of this build.

@@ -5,6 +5,8 @@
 #include <isolux/core/volume.h>
 
 #include <cstdint>
+#include <functional>
+#include <map>
 #include <optional>
 #include <string>
 
@@ -30,6 +32,7 @@ struct ReadOptions {
   std::optional<Vec3> spacing;          ///< replaces the file's spacing, world units; needed where a format has none
   bool allow_external_data = false;     ///< a header may name a data file outside its own folder
   VoxelForm form = VoxelForm::kFloats;  ///< set by read_volume and read_stored_volume
+  std::map<std::string, Settings, std::less<>> settings{};  ///< options of readers, by their names
 };
 
 /// The volume-io stage: reads one family of formats. Backends are immutable and callable from many threads.
