@@ -16,13 +16,24 @@ constexpr std::size_t kRaysAHeldOut = 16384;
 constexpr std::size_t kFewestHeldOut = 1024;
 constexpr std::size_t kMostHeldOut = 4096;
 constexpr std::size_t kSitesAHeldOut = 8;
+/// From this albedo on paths may be long, hundreds of rays in closed spaces: a quarter of both sites and rays has to
+/// do.
+constexpr float kLasting = 0.95f;
 /// Of the squared error asked, what reading may be wrong by so that less noise can make up for it.
 constexpr double kMostReadingError = 0.75;
 
-std::vector<std::size_t> sites_to_hold_out(std::size_t sites, const BakeSettings& settings, const Run& run) {
+bool paths_last(const Scene& scene) {
+  return std::any_of(scene.albedo.keys.begin(), scene.albedo.keys.end(), [](const auto& key) {
+    return std::max({key.colour.x, key.colour.y, key.colour.z}) > kLasting;
+  });
+}
+
+std::vector<std::size_t> sites_to_hold_out(std::size_t sites, const Scene& scene, const BakeSettings& settings,
+                                           const Run& run) {
   const std::size_t by_rays =
       settings.target_rmse > 0.0 ? kMostHeldOut : sites * std::size_t(std::max(settings.trace.rays, 1)) / kRaysAHeldOut;
-  const std::size_t wanted = std::clamp(by_rays, kFewestHeldOut, kMostHeldOut);
+  const std::size_t part = paths_last(scene) ? 4 : 1;
+  const std::size_t wanted = std::clamp(by_rays, kFewestHeldOut, kMostHeldOut) / part;
   return one_of_each_share(sites, std::min(wanted, (sites + kSitesAHeldOut - 1) / kSitesAHeldOut), run);
 }
 
@@ -41,7 +52,8 @@ HeldOut hold_out(const Volume& volume, const Scene& scene, const Sites& sites, c
   TraceSettings judged = settings.trace;
   judged.nets = RayNets::kIndependent;
   judged.rays = settings.target_rmse > 0.0 && settings.target_rmse < 0.012 ? 128 : 64;
-  std::vector<std::size_t> numbers = sites_to_hold_out(sites.size(), settings, run);
+  if (paths_last(scene)) judged.rays /= 4;
+  std::vector<std::size_t> numbers = sites_to_hold_out(sites.size(), scene, settings, run);
   const Sites some = those(sites, numbers);
   return {volume, scene, some, std::move(numbers), judged, run};
 }
