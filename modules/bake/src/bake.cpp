@@ -24,6 +24,9 @@ namespace {
 
 /// More rays than a small bake says an error takes: it knows its own error to some percent.
 constexpr double kMargin = 1.15;
+/// Where iteration took no more, paths to the same error, ten to thirty times as many rays, are still a matter of
+/// seconds.
+constexpr std::uint64_t kMostRaysOnceMore = 20'000'000;
 constexpr double kLeastSeconds = 1e-3;  ///< where a time is over before any ray
 
 BakeResult bake_paths(const Volume& volume, const Scene& scene, const BakeSettings& settings, FoundSites found,
@@ -69,7 +72,7 @@ BakeResult bake_side(const Volume& volume, const Scene& scene, const BakeSetting
 /// Whether reflections have to be followed by paths to reach the error asked.
 bool wants_paths(const BakeSettings& settings, const BakeResult& iterated) {
   return settings.bounce_method == BounceMethod::kIteratedOrPaths && settings.target_rmse > 0.0 &&
-         !reading_allows(settings.target_rmse, iterated.reading_error);
+         iterated.counters.rays <= kMostRaysOnceMore && !reading_allows(settings.target_rmse, iterated.reading_error);
 }
 
 /// One number of rays for all sites, from what a small bake shows.

@@ -31,7 +31,8 @@ enum class BounceMethod {
               ///< grid's own error as a small bias; does not use the tracer
   kPaths,     ///< the tracer follows every path to its end: unbiased
   kIteratedOrPaths  ///< kIterated, unless target_rmse is asked and reading reflections from texels alone is nearly as
-                    ///< wrong (BakeResult::reading_error): kPaths then, BakeResult::skipped tells
+                    ///< wrong (BakeResult::reading_error): kPaths then, if iteration took at most 20 million rays
+                    ///< (paths take some twenty times as many); BakeResult::skipped tells
 };
 
 /// Which sites are traced.
