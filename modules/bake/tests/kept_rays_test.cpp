@@ -11,6 +11,8 @@
 #include <utility>
 #include <vector>
 
+#include "rms_difference.h"
+
 namespace isolux::test {
 namespace {
 
@@ -117,10 +119,7 @@ TEST(KeptRays, EstimateTheErrorOfAllTexels) {
     // Of many rays the error is a tenth of what is asked here, and independent.
     const IlluminationGrid reference = bake(volume, white(0.8f), settings, builtin_stages(), other).light;
     const BakeResult result = bake(volume, white(0.8f), towards(0.015, 0), builtin_stages(), isolux::Run{});
-    double squares = 0.0;
-    for (std::size_t i = 0; i < reference.values.size(); ++i)
-      squares += std::pow(double(result.light.values[i]) - double(reference.values[i]), 2.0);
-    const double found = std::sqrt(squares / double(reference.values.size()));
+    const double found = rms_difference(result.light, reference);
     EXPECT_LT(found, 1.3 * result.rmse_estimate);
     EXPECT_GT(found, result.rmse_estimate / 1.3);
   }
@@ -143,10 +142,7 @@ TEST(KeptRays, EstimateWhatReadingReflectionsAddsToTheNoise) {
       iterated.target_rmse = has_target ? 0.012 : 0.0;
       iterated.bounce_method = BounceMethod::kIterated;
       const BakeResult result = bake(volume, white(0.8f), iterated, builtin_stages(), isolux::Run{});
-      double squares = 0.0;
-      for (std::size_t i = 0; i < reference.values.size(); ++i)
-        squares += std::pow(double(result.light.values[i]) - double(reference.values[i]), 2.0);
-      const double found = std::sqrt(squares / double(reference.values.size()));
+      const double found = rms_difference(result.light, reference);
       EXPECT_GT(result.reading_error, 0.5 * found);
       EXPECT_LT(found, 1.3 * result.rmse_estimate);
       EXPECT_GT(found, result.rmse_estimate / 1.3);
@@ -178,10 +174,7 @@ TEST(KeptRays, GiveWayToPathsWhereTheErrorAskedIsOutOfReach) {
   isolux::Run other;
   other.seed = 2;
   const IlluminationGrid reference = bake(volume, white(0.8f), many, builtin_stages(), other).light;
-  double squares = 0.0;
-  for (std::size_t i = 0; i < reference.values.size(); ++i)
-    squares += std::pow(double(result.light.values[i]) - double(reference.values[i]), 2.0);
-  EXPECT_LT(std::sqrt(squares / double(reference.values.size())), 1.3 * result.rmse_estimate);
+  EXPECT_LT(rms_difference(result.light, reference), 1.3 * result.rmse_estimate);
   // Lamps' light is not kept, the rays of all sites are counted out: likewise.
   Scene sunny = white(0.8f);
   sunny.lights = {SunLight{.direction = {0.0f, 0.6f, 0.8f}}};
@@ -247,11 +240,8 @@ TEST(KeptRays, EndWhereMemoryDoes) {
   EXPECT_EQ(some.skipped.at("links_beyond_memory"), kSites * (64 - 16));
   EXPECT_EQ(some.counters.rays, all.counters.rays);
   EXPECT_LT(some.link_bytes, all.link_bytes / 2);
-  double squares = 0.0;
-  for (std::size_t i = 0; i < all.light.values.size(); ++i)
-    squares += std::pow(double(all.light.values[i]) - double(some.light.values[i]), 2.0);
   // What 16 rays are noisier by, seen through the ends of 64: .3 / sqrt(16) / sqrt(64), less for their nets.
-  EXPECT_LT(std::sqrt(squares / double(all.light.values.size())), 0.01);
+  EXPECT_LT(rms_difference(all.light, some.light), 0.01);
   // Without reflections nothing is linked, and where hardly any link fits a set of kept rays is refused.
   settings.most_link_bytes = 4 * kSites * 3;
   settings.bounce_method = BounceMethod::kIterated;

@@ -7,6 +7,8 @@
 #include <cmath>
 #include <utility>
 
+#include "rms_difference.h"
+
 namespace isolux::test {
 namespace {
 
@@ -16,12 +18,6 @@ BakeSettings by_need(double rmse, int bounces = 0) {
   settings.target_rmse = rmse;
   settings.texel_sites = TexelSites::kNeeded;
   return settings;
-}
-
-double difference(const IlluminationGrid& a, const IlluminationGrid& b) {
-  double squares = 0.0;
-  for (std::size_t i = 0; i < a.values.size(); ++i) squares += std::pow(double(a.values[i]) - double(b.values[i]), 2.0);
-  return std::sqrt(squares / double(a.values.size()));
 }
 
 TEST(LightByNeed, EstimatesTheTrueError) {
@@ -36,7 +32,7 @@ TEST(LightByNeed, EstimatesTheTrueError) {
     const IlluminationGrid reference = bake(volume, Scene{}, settings, builtin_stages(), other).light;
     const BakeResult result = bake(volume, Scene{}, by_need(0.02), builtin_stages(), isolux::Run{});
     EXPECT_LE(result.rmse_estimate, 0.02);
-    const double found = difference(result.light, reference);
+    const double found = rms_difference(result.light, reference);
     EXPECT_LT(found, 1.3 * result.rmse_estimate);
     EXPECT_GT(found, result.rmse_estimate / 1.3);
   }
@@ -50,7 +46,7 @@ double difference_from_paths(const Volume& volume, const IlluminationGrid& light
   isolux::Run other;
   other.seed = 2;
   const BakeResult paths = bake(volume, Scene{}, settings, builtin_stages(), other);
-  return std::sqrt(std::pow(difference(light, paths.light), 2.0) - std::pow(paths.rmse_estimate, 2.0));
+  return std::sqrt(std::pow(rms_difference(light, paths.light), 2.0) - std::pow(paths.rmse_estimate, 2.0));
 }
 
 TEST(LightByNeed, EstimatesTheTrueErrorOfReflectedLight) {
@@ -137,7 +133,7 @@ TEST(LightByNeed, TracesEveryTexelWhereLightIsRough) {
   isolux::Run other;
   other.seed = 2;
   // Of so many rays the error is a tenth of what is asked here; 512 texels held out say theirs within a tenth.
-  const double found = difference(result.light, bake(volume, Scene{}, settings, builtin_stages(), other).light);
+  const double found = rms_difference(result.light, bake(volume, Scene{}, settings, builtin_stages(), other).light);
   EXPECT_LT(found, 1.3 * result.rmse_estimate);
   EXPECT_GT(found, result.rmse_estimate / 1.3);
 }
