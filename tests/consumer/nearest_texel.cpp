@@ -21,6 +21,7 @@ class NearestSample : public isolux::Resampler {
 
   [[nodiscard]] isolux::ResampledGrid resample(const isolux::Volume& volume, const isolux::SampleSet& samples,
                                                const isolux::Lattice& texels, const isolux::Run& run) const override {
+    if (samples.size() == 0) throw isolux::InvalidInput("nearest_sample: there are no samples");
     isolux::ResampledGrid result{isolux::IlluminationGrid(texels, samples.channels), {}};
     result.lit.assign(texels.count(), 0);
     const auto channels = std::size_t(samples.channels);

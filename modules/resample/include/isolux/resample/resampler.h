@@ -41,7 +41,8 @@ class Resampler {
   [[nodiscard]] virtual bool takes_parts() const { return false; }
   /// Puts more samples into `texels`, which begins as unlit_grid() of their channels; no two parts have samples for one
   /// texel. All parts together, told_by_bytes(), are what resample() makes of all samples. Of the
-  /// sites only positions are looked at, isovalues and normals may be missing. \pre takes_parts() \throw as resample()
+  /// sites only positions are looked at, isovalues, normals and variances may be missing. \pre takes_parts() \throw as
+  /// resample()
   virtual void add_part(const Volume& volume, const SampleSet& samples, IlluminationGrid& texels, const Run& run) const;
 
   /// Whether what it makes is read with near-field terms (NearFieldTerm), where these help.
