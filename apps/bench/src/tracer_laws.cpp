@@ -74,17 +74,6 @@ void furnaces(const Bench& bench, Judge& judge) {
              kAllowedEnergy});
 }
 
-/// The sites with these numbers.
-Sites some_of(const Sites& sites, const std::vector<std::size_t>& numbers) {
-  Sites some;
-  for (const std::size_t i : numbers) {
-    some.positions.push_back(sites.positions[i]);
-    some.isovalues.push_back(sites.isovalues[i]);
-    some.normals.push_back(sites.normals[i]);
-  }
-  return some;
-}
-
 /// How many of the sites get lighter where paths may be twenty times as long: light finds its way to them through necks
 /// so narrow that the tracer's longest path ends before. None if the tracer has no such option.
 double lit_by_longer_paths(const Bench& bench, const Sites& sites, const std::vector<float>& before) {

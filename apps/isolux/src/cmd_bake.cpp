@@ -102,8 +102,8 @@ void report_bake(const BakeResult& result, Session& session) {
   }
 }
 
-/// What was done otherwise than asked for want of memory.
-void say_of_memory(const BakeResult& result, const Session& session) {
+/// What was done otherwise than asked, and why.
+void say_what_was_done(const BakeResult& result, const Session& session) {
   if (const auto it = result.skipped.find("links_beyond_memory"); it != result.skipped.end()) {
     const char* instead =
         result.sweeps == 0 ? "reflections are followed by paths" : "they are traced for the last reflection alone";
@@ -155,7 +155,7 @@ void run_bake(const BakeOptions& options, Session& session) {
   for (const auto& [stage, seconds] : result.seconds) session.add_seconds(stage, seconds);
   const double trace_seconds = std::max(result.seconds["trace"], 1e-9);
   report_bake(result, session);
-  say_of_memory(result, session);
+  say_what_was_done(result, session);
   say_of_error(result, options.rmse, session);
   session.report["rays_per_second"] = double(result.counters.rays) / trace_seconds;
   const bool known = !std::isnan(result.rmse_estimate);

@@ -65,7 +65,7 @@ void run_probe(const ProbeOptions& options, Session& session) {
   const TrilinearField field(volume);
   const LightReader reader(volume, options.light.of_side(light, options.side.or_outer()), TexelStorage::kBricks,
                            session.run);
-  const std::optional<ValueRange>& lit = light.grid.detail.isovalues;
+  const LightDetail& detail = light.grid.detail;
   std::size_t outside = 0;
   std::size_t unlit = 0;
   session.timed("write", [&] {
@@ -76,7 +76,7 @@ void run_probe(const ProbeOptions& options, Session& session) {
         if (!index) ++outside;
         const double nan = std::numeric_limits<double>::quiet_NaN();
         const double isovalue = index ? field.value(*index) : nan;
-        unlit += std::size_t(lit && (isovalue < double(lit->low) || isovalue > double(lit->high)));
+        unlit += std::size_t(index && !detail.covers(isovalue));
         const Vec3f e = index ? reader.at_index(*index) : Vec3f(float(nan));
         fmt::print(out, "{},{},{},{:.9g}", p.x, p.y, p.z, isovalue);
         for (int c = 0; c < light.grid.channels; ++c) fmt::print(out, ",{:.9g}", e[c]);
@@ -91,7 +91,7 @@ void run_probe(const ProbeOptions& options, Session& session) {
     session.warn(
         fmt::format("{} of {} points lie on level sets outside the range {} to {} that the light is of: what is "
                     "read there is not their light",
-                    unlit, points.size(), lit->low, lit->high));
+                    unlit, points.size(), detail.isovalues->low, detail.isovalues->high));
   if (outside > 0)
     session.warn(fmt::format("{} of {} points lie outside the volume's box; their isovalue and light are nan", outside,
                              points.size()));

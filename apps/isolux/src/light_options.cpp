@@ -10,16 +10,12 @@ void LightOptions::add_to(CLI::App& command) {
   command.add_flag("--force", force_, "use the light of another volume all the same");
 }
 
-LevelSetSide side_towards(const LightFile& light, OuterSide outer) {
-  return outer == light_outer(light) ? LevelSetSide::kOuter : LevelSetSide::kInner;
-}
-
 void warn_outside_light(const LightFile& light, float isovalue, const Session& session) {
-  const std::optional<ValueRange>& lit = light.grid.detail.isovalues;
-  if (!lit || (isovalue >= lit->low && isovalue <= lit->high)) return;
+  const LightDetail& detail = light.grid.detail;
+  if (detail.covers(double(isovalue))) return;
   session.warn(
       fmt::format("isovalue {} lies outside the range {} to {} that the light is of: what is shown is not its light",
-                  isovalue, lit->low, lit->high));
+                  isovalue, detail.isovalues->low, detail.isovalues->high));
 }
 
 void SideOption::add_to(CLI::App& command, const std::string& help) {

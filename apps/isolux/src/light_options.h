@@ -28,9 +28,6 @@ class LightOptions {
   bool force_ = false;
 };
 
-/// Which of a light's sides shows on a surface whose outside is `outer`.
-[[nodiscard]] LevelSetSide side_towards(const LightFile& light, OuterSide outer);
-
 /// Where a light is of a range of isovalues, what lies outside is read from what lies next to it.
 void warn_outside_light(const LightFile& light, float isovalue, const Session& session);
 

@@ -152,7 +152,8 @@ double KeptRays::reading_error(const SampleSet& samples) const { return judge_ =
 
 BakeResult KeptRays::last_light(const Scene& scene, const Run& run) && {
   require_kept();
-  if (settings_.trace.bounces != 0) {
+  // One ray a site says nothing of its noise, so that there is nothing to set the bias apart from.
+  if (settings_.trace.bounces != 0 && (has_target(settings_) || settings_.trace.rays > 1)) {
     const Stopwatch watch;
     judge_ = std::make_unique<const ReadingError>(volume_, scene, links_->sites(), settings_, run);
     trace_seconds_ += watch.seconds();

@@ -134,4 +134,8 @@ int light_bounces(const LightFile& light) {
 
 OuterSide light_outer(const LightFile& light) { return scene_of(light).value_or(Scene{}).outer; }
 
+LevelSetSide side_towards(const LightFile& light, OuterSide outer) {
+  return outer == light_outer(light) ? LevelSetSide::kOuter : LevelSetSide::kInner;
+}
+
 }  // namespace isolux

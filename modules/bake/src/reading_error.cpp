@@ -37,16 +37,6 @@ std::vector<std::size_t> sites_to_hold_out(std::size_t sites, const Scene& scene
   return one_of_each_share(sites, std::min(wanted, (sites + kSitesAHeldOut - 1) / kSitesAHeldOut), run);
 }
 
-Sites those(const Sites& sites, std::span<const std::size_t> numbers) {
-  Sites some;
-  for (const std::size_t i : numbers) {
-    some.positions.push_back(sites.positions[i]);
-    some.isovalues.push_back(sites.isovalues[i]);
-    some.normals.push_back(sites.normals[i]);
-  }
-  return some;
-}
-
 HeldOut hold_out(const Volume& volume, const Scene& scene, const Sites& sites, const BakeSettings& settings,
                  const Run& run) {
   TraceSettings judged = settings.trace;
@@ -54,7 +44,7 @@ HeldOut hold_out(const Volume& volume, const Scene& scene, const Sites& sites, c
   judged.rays = settings.target_rmse > 0.0 && settings.target_rmse < 0.012 ? 128 : 64;
   if (paths_last(scene)) judged.rays /= 4;
   std::vector<std::size_t> numbers = sites_to_hold_out(sites.size(), scene, settings, run);
-  const Sites some = those(sites, numbers);
+  const Sites some = some_of(sites, numbers);
   return {volume, scene, some, std::move(numbers), judged, run};
 }
 

@@ -61,4 +61,14 @@ IndexToWorld index_to_index(const Lattice& from, const Lattice& to) {
   return {.origin = inverse * (from.frame.origin - to.frame.origin), .axes = inverse * from.frame.axes};
 }
 
+bool has_axes_of(const Lattice& one, const Lattice& other) {
+  constexpr double kRounding = 1e-9;
+  const IndexToWorld to_other = index_to_index(one, other);
+  for (int a = 0; a < 3; ++a)
+    for (int b = 0; b < 3; ++b)
+      if (a != b && std::abs(to_other.axes[b][a]) * double(one.size[b]) > kRounding * double(other.size[a]))
+        return false;
+  return true;
+}
+
 }  // namespace isolux

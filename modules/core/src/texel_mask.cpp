@@ -15,14 +15,6 @@ struct Window {
   int last = 0;
 };
 
-bool has_axes_of(const IndexToWorld& to_volume, const Index3& texels, const Index3& volume) {
-  constexpr double kRounding = 1e-9;
-  for (int a = 0; a < 3; ++a)
-    for (int b = 0; b < 3; ++b)
-      if (a != b && std::abs(to_volume.axes[b][a]) * double(texels[b]) > kRounding * double(volume[a])) return false;
-  return true;
-}
-
 /// Of each texel of an axis, the grid points between whose values light is read from it.
 std::vector<Window> windows(const IndexToWorld& to_volume, int axis, int texels, int points) {
   std::vector<Window> windows(static_cast<std::size_t>(texels));
@@ -76,7 +68,7 @@ TexelMask texels_read_by(const Volume& volume, const Lattice& texels, const Valu
   const Index3 size = texels.size;
   TexelMask mask(size);
   const IndexToWorld to_volume = index_to_index(texels, volume.lattice());
-  if (!has_axes_of(to_volume, size, volume.lattice().size)) {
+  if (!has_axes_of(texels, volume.lattice())) {
     for (std::size_t t = 0; t < texels.count(); ++t) mask.set(t);
     return mask;
   }

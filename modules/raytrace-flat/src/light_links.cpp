@@ -33,7 +33,7 @@ LightLinks::LightLinks(const Volume& volume, Sites sites, const LinkSettings& se
   Run other = run;
   other.seed = wide::probe_seed(run.seed);
   other.progress = {};
-  again_.reset(new LightLinks(volume, wide::sites_of(sites_, probes_), settings, other, WithoutProbes{}));
+  again_.reset(new LightLinks(volume, some_of(sites_, probes_), settings, other, WithoutProbes{}));
   again_->rounds_->targets = rounds_->targets;
   again_->trace(0, first_rays(), {}, other);
   add(counters_, again_->counters_);
@@ -118,7 +118,7 @@ void LightLinks::append(const Sites& more, const Run& run) {
   Run quiet = run;
   quiet.progress = {};
   const TraceCounters before = again_->counters_;
-  again_->append(wide::sites_of(more, probes), quiet);
+  again_->append(some_of(more, probes), quiet);
   add(counters_, again_->counters_ - before);
 }
 

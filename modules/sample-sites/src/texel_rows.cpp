@@ -8,13 +8,10 @@
 namespace isolux {
 
 TexelRows::TexelRows(const Volume& volume, const SiteRequest& request)
-    : volume_(volume), texels_(request.texels.size), to_volume_(index_to_index(request.texels, volume.lattice())) {
-  // Off the axes there is rounding alone, or the lattice is another one.
-  constexpr double kRounding = 1e-9;
-  for (int a = 0; a < 3; ++a)
-    for (int b = 0; b < 3; ++b)
-      if (a != b && std::abs(to_volume_.axes[b][a]) * double(texels_[b]) > kRounding * double(volume.lattice().size[a]))
-        is_aligned_ = false;
+    : volume_(volume),
+      texels_(request.texels.size),
+      to_volume_(index_to_index(request.texels, volume.lattice())),
+      is_aligned_(has_axes_of(request.texels, volume.lattice())) {
   for (int x = 0; x < texels_.x; ++x) {
     const Between at = between(0, to_volume_.origin.x + double(x) * to_volume_.axes[0].x);
     firsts_.push_back(at.first);

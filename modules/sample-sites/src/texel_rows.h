@@ -44,7 +44,7 @@ class TexelRows {
   const Volume& volume_;
   Index3 texels_;
   IndexToWorld to_volume_;
-  bool is_aligned_ = true;
+  bool is_aligned_;
   std::vector<int> firsts_;       ///< of each x: Between
   std::vector<float> fractions_;  ///< likewise
   bool is_one_a_cell_ = true;     ///< texel x lies between grid points x and x + 1

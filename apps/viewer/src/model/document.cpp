@@ -57,7 +57,7 @@ OuterSide outer_side(const Document& document, const Scene& scene, std::optional
 }
 
 const IlluminationGrid* grid_of(const LightFile& light, OuterSide side) {
-  if (light_outer(light) == side) return &light.grid;
+  if (side_towards(light, side) == LevelSetSide::kOuter) return &light.grid;
   return light.inner ? &*light.inner : nullptr;
 }
 
@@ -67,9 +67,7 @@ const IlluminationGrid& shown_grid(const LightFile& light, OuterSide outer) {
 }
 
 bool has_light_of(const Document& document, float isovalue) {
-  if (!document.light) return false;
-  const std::optional<ValueRange>& lit = document.light->file->grid.detail.isovalues;
-  return !lit || (lit->low <= isovalue && isovalue <= lit->high);
+  return document.light && document.light->file->grid.detail.covers(double(isovalue));
 }
 
 SurfaceColour surface_colour_of(const Document& document, const Scene& scene, float isovalue) {

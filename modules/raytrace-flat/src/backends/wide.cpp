@@ -35,7 +35,7 @@ class WideTracer final : public FlatTracer {
     light(volume, scene, settings, run, samples, result.counters);
     SampleSet again;
     const std::vector<std::size_t> probes = wide::choose_probes(samples.sites);
-    again.sites = wide::sites_of(samples.sites, probes);
+    again.sites = some_of(samples.sites, probes);
     Run other = run;
     other.seed = wide::probe_seed(run.seed);
     other.progress = {};

@@ -82,16 +82,6 @@ std::vector<std::size_t> choose_probes(const Sites& sites) {
   return probes;
 }
 
-Sites sites_of(const Sites& sites, std::span<const std::size_t> numbers) {
-  Sites chosen;
-  for (const std::size_t i : numbers) {
-    chosen.positions.push_back(sites.positions[i]);
-    chosen.isovalues.push_back(sites.isovalues[i]);
-    chosen.normals.push_back(sites.normals[i]);
-  }
-  return chosen;
-}
-
 void calibrate_variance(SampleSet& samples, std::span<const std::size_t> probes, const SampleSet& again,
                         std::span<const std::uint32_t> rays) {
   constexpr std::size_t kEnough = 64;

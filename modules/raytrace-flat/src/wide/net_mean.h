@@ -47,7 +47,6 @@ void tell_lamps_apart(SampleSet& samples, const SampleSet& lamps);
 /// The sites with a normal whose light is found twice, to know by how much NetMean's variances are too large: all of
 /// few, one of 64 of many.
 [[nodiscard]] std::vector<std::size_t> choose_probes(const Sites& sites);
-[[nodiscard]] Sites sites_of(const Sites& sites, std::span<const std::size_t> numbers);
 
 /// Scales the variances of `samples` so that on the probes they add up to what the difference of two results with
 /// independent random numbers shows. `again` holds the second results of `probes`. Where sites have different numbers

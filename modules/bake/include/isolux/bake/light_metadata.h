@@ -35,5 +35,7 @@ void require_light_of(const LightFile& light, const Volume& volume, const std::s
 
 /// The outer side that the light was baked for.
 [[nodiscard]] OuterSide light_outer(const LightFile& light);
+/// Which of a light's sides shows on a surface whose outside is `outer`.
+[[nodiscard]] LevelSetSide side_towards(const LightFile& light, OuterSide outer);
 
 }  // namespace isolux

@@ -37,6 +37,10 @@ struct LightDetail {
   std::optional<ValueRange> isovalues{};  ///< the level sets that were lit; texels that none of them touches may be 0
 
   [[nodiscard]] bool empty() const { return slopes.empty() && normal_slopes[0].empty() && near_field.empty(); }
+  /// Whether the level set of an isovalue was lit.
+  [[nodiscard]] bool covers(double isovalue) const {
+    return !isovalues || (isovalue >= double(isovalues->low) && isovalue <= double(isovalues->high));
+  }
   /// Numbers a value of the grid is stored as.
   [[nodiscard]] int numbers() const { return 1 + (slopes.empty() ? 0 : 1) + (normal_slopes[0].empty() ? 0 : 3); }
 };

@@ -55,5 +55,7 @@ void require_values(const Lattice& lattice, std::size_t values);
 
 /// The affine map from `from`'s index space to `to`'s index space.
 [[nodiscard]] IndexToWorld index_to_index(const Lattice& from, const Lattice& to);
+/// Whether each axis runs along the other's axis of the same number, but for rounding.
+[[nodiscard]] bool has_axes_of(const Lattice& one, const Lattice& other);
 
 }  // namespace isolux

@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 namespace isolux {
@@ -16,6 +17,9 @@ struct Sites {
 
   [[nodiscard]] std::size_t size() const { return positions.size(); }
 };
+
+/// The sites with these numbers, in their order.
+[[nodiscard]] Sites some_of(const Sites& sites, std::span<const std::size_t> numbers);
 
 /// Whether samples say which part of their light is lamps': what light sources, and parts of an image as bright as
 /// these, send straight to a site. Rays are aimed at them, so it is hardly noisy, and has edges that the rest has not.
