@@ -134,8 +134,8 @@ std::optional<OneSurface> one_surface(const Target& target, int rays, const Suit
   if (mesh.n_vertices() == 0) return std::nullopt;
   const auto embree = EmbreeMesh::build(mesh);
   if (!embree) return std::nullopt;
-  const std::vector<float> light =
-      light_vertices(*embree, EmbreeCall::kPacketsOf8, mesh, mesh.n_vertices(), rays, context.run);
+  const std::vector<float> light = light_vertices(*embree, EmbreeCall::kPacketsOf8, RayQuestion::kAnyHit, mesh,
+                                                  mesh.n_vertices(), rays, context.run);
   OneSurface result{.vertices = mesh.n_vertices(), .measured = {.seconds = watch.seconds(), .error = {}}};
 
   // The level set's own light at some vertices.

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstdint>
 #include <glm/geometric.hpp>
+#include <limits>
 #include <numbers>
 
 namespace isolux::bench {
@@ -27,8 +28,8 @@ Vec3f cosine_direction(const Vec3f& n, RandomStream& random) {
 
 }  // namespace
 
-std::vector<float> light_vertices(const EmbreeMesh& embree, EmbreeCall call, const IsoMesh& mesh, std::size_t count,
-                                  int rays, const Run& run) {
+std::vector<float> light_vertices(const EmbreeMesh& embree, EmbreeCall call, RayQuestion question, const IsoMesh& mesh,
+                                  std::size_t count, int rays, const Run& run) {
   float size = 0.0f;
   for (const auto vertex : mesh.vertices()) {
     for (int a = 0; a < 3; ++a) size = std::max(size, std::fabs(mesh.point(vertex)[unsigned(a)]));
@@ -42,6 +43,7 @@ std::vector<float> light_vertices(const EmbreeMesh& embree, EmbreeCall call, con
     std::vector<Vec3f> origins(n);
     std::vector<Vec3f> directions(n);
     std::vector<std::uint8_t> hits(n);
+    std::vector<float> distances(n);
     for (std::size_t i = block.begin; i < block.end; ++i) {
       const auto vertex = mesh.vertex_handle(unsigned(i + block.index * left_out));
       const auto& p = mesh.point(vertex);
@@ -52,9 +54,14 @@ std::vector<float> light_vertices(const EmbreeMesh& embree, EmbreeCall call, con
         directions[r] = cosine_direction(normal, random);
         origins[r] = Vec3f(p[0], p[1], p[2]) + offset * normal;
       }
-      embree.occluded(call, origins, directions, offset, hits);
-      int open = 0;
-      for (const std::uint8_t hit : hits) open += hit == 0 ? 1 : 0;
+      std::ptrdiff_t open = 0;
+      if (question == RayQuestion::kAnyHit) {
+        embree.occluded(call, origins, directions, offset, hits);
+        open = std::count(hits.begin(), hits.end(), std::uint8_t(0));
+      } else {
+        embree.first_hits(call, origins, directions, offset, distances);
+        open = std::count(distances.begin(), distances.end(), std::numeric_limits<float>::infinity());
+      }
       light[i] = float(open) / float(rays);
     }
   });

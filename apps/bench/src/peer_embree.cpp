@@ -53,56 +53,112 @@ class Embree3Mesh final : public EmbreeMesh {
 
   void occluded(EmbreeCall call, std::span<const Vec3f> origins, std::span<const Vec3f> directions, float near,
                 std::span<std::uint8_t> hits) const override {
-    RTCIntersectContext query;
-    rtcInitIntersectContext(&query);
-    query.flags = RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
+    RTCIntersectContext query = incoherent();
+    // A ray that was stopped comes back with tfar = -infinity.
+    const auto keep = [&](std::size_t r, float far) { hits[r] = far < 0.0f ? 1 : 0; };
+    const Rays rays{origins, directions, near};
     if (call == EmbreeCall::kStream) {
-      stream(query, origins, directions, near, hits);
+      std::vector<RTCRay> all = ray_list(rays);
+      rtcOccluded1M(scene_, &query, all.data(), unsigned(all.size()), sizeof(RTCRay));
+      for (std::size_t r = 0; r < all.size(); ++r) keep(r, all[r].tfar);
     } else if (call == EmbreeCall::kPacketsOf8) {
-      packets<8, RTCRay8>(query, origins, directions, near, hits, rtcOccluded8);
+      packets<8, RTCRay8>(
+          rays, [&](const int* valid, auto& packet) { rtcOccluded8(valid, scene_, &query, &packet); }, keep);
     } else {
-      packets<16, RTCRay16>(query, origins, directions, near, hits, rtcOccluded16);
+      packets<16, RTCRay16>(
+          rays, [&](const int* valid, auto& packet) { rtcOccluded16(valid, scene_, &query, &packet); }, keep);
+    }
+  }
+
+  void first_hits(EmbreeCall call, std::span<const Vec3f> origins, std::span<const Vec3f> directions, float near,
+                  std::span<float> distances) const override {
+    RTCIntersectContext query = incoherent();
+    const auto keep = [&](std::size_t r, float far) { distances[r] = far; };
+    const Rays rays{origins, directions, near};
+    if (call == EmbreeCall::kStream) {
+      const std::vector<RTCRay> all = ray_list(rays);
+      std::vector<RTCRayHit> found(all.size());
+      for (std::size_t r = 0; r < all.size(); ++r) found[r] = {.ray = all[r], .hit = nothing_hit<RTCHit>()};
+      rtcIntersect1M(scene_, &query, found.data(), unsigned(found.size()), sizeof(RTCRayHit));
+      for (std::size_t r = 0; r < all.size(); ++r) keep(r, found[r].ray.tfar);
+    } else if (call == EmbreeCall::kPacketsOf8) {
+      packets<8, RTCRay8>(
+          rays,
+          [&](const int* valid, auto& packet) {
+            RTCRayHit8 found{.ray = packet, .hit = nothing_hit<RTCHit8>()};
+            rtcIntersect8(valid, scene_, &query, &found);
+            packet = found.ray;
+          },
+          keep);
+    } else {
+      packets<16, RTCRay16>(
+          rays,
+          [&](const int* valid, auto& packet) {
+            RTCRayHit16 found{.ray = packet, .hit = nothing_hit<RTCHit16>()};
+            rtcIntersect16(valid, scene_, &query, &found);
+            packet = found.ray;
+          },
+          keep);
     }
   }
 
  private:
-  template <std::size_t kWidth, class Packet, class Query>
-  void packets(RTCIntersectContext& query, std::span<const Vec3f> origins, std::span<const Vec3f> directions,
-               float near, std::span<std::uint8_t> hits, Query query_packet) const {
-    for (std::size_t first = 0; first < origins.size(); first += kWidth) {
-      const std::size_t count = std::min(kWidth, origins.size() - first);
+  struct Rays {
+    std::span<const Vec3f> origins;
+    std::span<const Vec3f> directions;
+    float near;
+  };
+
+  static RTCIntersectContext incoherent() {
+    RTCIntersectContext query;
+    rtcInitIntersectContext(&query);
+    query.flags = RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
+    return query;
+  }
+
+  /// RTC_INVALID_GEOMETRY_ID in every place.
+  template <class Hit>
+  static Hit nothing_hit() {
+    Hit hit;
+    std::memset(&hit, 0xFF, sizeof(hit));
+    return hit;
+  }
+
+  /// Calls keep(ray, tfar) for what query(valid, packet) leaves of packets of the rays.
+  template <std::size_t kWidth, class Packet, class Query, class Keep>
+  static void packets(const Rays& rays, const Query& query, const Keep& keep) {
+    for (std::size_t first = 0; first < rays.origins.size(); first += kWidth) {
+      const std::size_t count = std::min(kWidth, rays.origins.size() - first);
       alignas(64) std::array<int, kWidth> valid{};
-      Packet rays{};
+      Packet packet{};
       for (std::size_t r = 0; r < count; ++r) {
-        const Vec3f& o = origins[first + r];
-        const Vec3f& d = directions[first + r];
+        const Vec3f& o = rays.origins[first + r];
+        const Vec3f& d = rays.directions[first + r];
         valid[r] = -1;
-        rays.org_x[r] = o.x;
-        rays.org_y[r] = o.y;
-        rays.org_z[r] = o.z;
-        rays.dir_x[r] = d.x;
-        rays.dir_y[r] = d.y;
-        rays.dir_z[r] = d.z;
-        rays.tnear[r] = near;
-        rays.tfar[r] = std::numeric_limits<float>::infinity();
-        rays.mask[r] = ~0u;
+        packet.org_x[r] = o.x;
+        packet.org_y[r] = o.y;
+        packet.org_z[r] = o.z;
+        packet.dir_x[r] = d.x;
+        packet.dir_y[r] = d.y;
+        packet.dir_z[r] = d.z;
+        packet.tnear[r] = rays.near;
+        packet.tfar[r] = std::numeric_limits<float>::infinity();
+        packet.mask[r] = ~0u;
       }
-      query_packet(valid.data(), scene_, &query, &rays);
-      // A ray that was stopped comes back with tfar = -infinity.
-      for (std::size_t r = 0; r < count; ++r) hits[first + r] = rays.tfar[r] < 0.0f ? 1 : 0;
+      query(valid.data(), packet);
+      for (std::size_t r = 0; r < count; ++r) keep(first + r, packet.tfar[r]);
     }
   }
 
-  void stream(RTCIntersectContext& query, std::span<const Vec3f> origins, std::span<const Vec3f> directions, float near,
-              std::span<std::uint8_t> hits) const {
-    std::vector<RTCRay> rays(origins.size());
-    for (std::size_t r = 0; r < rays.size(); ++r) {
-      const Vec3f& o = origins[r];
-      const Vec3f& d = directions[r];
-      rays[r] = {.org_x = o.x,
+  static std::vector<RTCRay> ray_list(const Rays& rays) {
+    std::vector<RTCRay> list(rays.origins.size());
+    for (std::size_t r = 0; r < list.size(); ++r) {
+      const Vec3f& o = rays.origins[r];
+      const Vec3f& d = rays.directions[r];
+      list[r] = {.org_x = o.x,
                  .org_y = o.y,
                  .org_z = o.z,
-                 .tnear = near,
+                 .tnear = rays.near,
                  .dir_x = d.x,
                  .dir_y = d.y,
                  .dir_z = d.z,
@@ -112,8 +168,7 @@ class Embree3Mesh final : public EmbreeMesh {
                  .id = 0,
                  .flags = 0};
     }
-    rtcOccluded1M(scene_, &query, rays.data(), unsigned(rays.size()), sizeof(RTCRay));
-    for (std::size_t r = 0; r < rays.size(); ++r) hits[r] = rays[r].tfar < 0.0f ? 1 : 0;
+    return list;
   }
 
   RTCDevice device_;
@@ -126,8 +181,7 @@ class Embree3Mesh final : public EmbreeMesh {
 std::unique_ptr<EmbreeMesh> EmbreeMesh::build(const IsoMesh& mesh) { return std::make_unique<Embree3Mesh>(mesh); }
 
 std::string embree_version() {
-  return fmt::format("{}, any hit, high build quality, incoherent rays in the fastest of its calls",
-                     RTC_VERSION_STRING);
+  return fmt::format("{}, high build quality, incoherent rays in the fastest of its calls", RTC_VERSION_STRING);
 }
 #else
 std::unique_ptr<EmbreeMesh> EmbreeMesh::build(const IsoMesh& /*mesh*/) { return nullptr; }

@@ -23,7 +23,7 @@ enum class EmbreeCall : std::uint8_t { kPacketsOf8, kPacketsOf16, kStream };
 [[nodiscard]] std::string_view embree_call_name(EmbreeCall call);
 
 /// Embree's tree over a triangle mesh, as its documentation recommends for speed: a static high-quality tree, rays
-/// flagged as incoherent, any hit.
+/// flagged as incoherent.
 class EmbreeMesh {
  public:
   /// Null where Embree is not in this build.
@@ -35,6 +35,9 @@ class EmbreeMesh {
   /// \param directions unit
   virtual void occluded(EmbreeCall call, std::span<const Vec3f> origins, std::span<const Vec3f> directions, float near,
                         std::span<std::uint8_t> hits) const = 0;
+  /// The distance of the first triangle that a ray hits beyond `near`; infinity for rays that hit none. As occluded().
+  virtual void first_hits(EmbreeCall call, std::span<const Vec3f> origins, std::span<const Vec3f> directions,
+                          float near, std::span<float> distances) const = 0;
 };
 
 }  // namespace isolux::bench

@@ -8,10 +8,11 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <string_view>
 #include <utility>
 
 #include "cell_walk.h"
-#include "mesh_light.h"
+#include "embree_speed.h"
 #include "stats.h"
 #include "suites.h"
 #include "tracer_speed.h"
@@ -19,49 +20,8 @@
 namespace isolux::bench {
 namespace {
 
-/// Embree on the mesh of one isosurface, which is what somebody would use who lights surfaces one by one.
-class Peer {
- public:
-  Peer(const Volume& volume, float isovalue, const SuiteContext& context)
-      : mesh_(context.stages.extractors.create()->extract(volume, {.isovalue = isovalue}, context.run)) {
-    if (mesh_.n_vertices() > 0) embree_ = EmbreeMesh::build(mesh_);
-  }
-  [[nodiscard]] bool exists() const { return embree_ != nullptr; }
-  [[nodiscard]] double build_seconds() const { return embree_->build_seconds(); }
-
-  /// Million rays a second of the fastest call, and which that is.
-  [[nodiscard]] std::pair<Estimate, EmbreeCall> speed(const Run& run, double seconds) const {
-    std::pair<Estimate, EmbreeCall> best;
-    for (const EmbreeCall call : {EmbreeCall::kPacketsOf8, EmbreeCall::kPacketsOf16, EmbreeCall::kStream}) {
-      const Estimate found = speed(call, run, seconds / 3.0);
-      if (found.value > best.first.value) best = {found, call};
-    }
-    return best;
-  }
-
- private:
-  [[nodiscard]] Estimate speed(EmbreeCall call, const Run& run, double seconds) const {
-    // Fewer say nothing of a mesh whose parts are differently open.
-    const std::size_t least = std::min<std::size_t>(mesh_.n_vertices(), 1024);
-    std::size_t vertices = least;
-    const auto once = [&] {
-      const Stopwatch watch;
-      (void)light_vertices(*embree_, call, mesh_, vertices, kSpeedRays, run);
-      return watch.seconds();
-    };
-    const double first = once();
-    vertices = std::clamp(grown(vertices, first, seconds / 5.0), least, mesh_.n_vertices());
-    std::vector<double> rates;
-    const Stopwatch all;
-    do {
-      rates.push_back(1e-6 * double(vertices * kSpeedRays) / once());
-    } while (rates.size() < 3 || (rates.size() < 9 && all.seconds() < 0.7 * seconds));
-    return median(rates);
-  }
-
-  IsoMesh mesh_;
-  std::unique_ptr<const EmbreeMesh> embree_;
-};
+/// What a row of the first hits is called, behind who finds them.
+constexpr const char* kFirstHit = ", first hit";
 
 Table speed_table() {
   Table table{.id = "all",
@@ -74,7 +34,8 @@ Table speed_table() {
       "any hit need not solve them, nor search for a hit that a look at the inner side proves. Setting up is left out "
       "of the rates: what a tracer makes of the volume, and "
       "Embree's "
-      "tree; Embree in the fastest of its calls.";
+      "tree; Embree in the fastest of its calls. Rows of first hits, which reflections take, find where each ray ends; "
+      "they prove nothing.";
   return table;
 }
 
@@ -87,12 +48,23 @@ void add_row(Table& table, const std::string& volume, int threads, const std::st
                         speed.setup_seconds});
 }
 
-void add_peer_row(Table& table, const std::string& volume, int threads, const std::pair<Estimate, EmbreeCall>& speed,
-                  double setup_seconds) {
-  const Estimate& rate = speed.first;
-  table.rows.push_back({volume, double(threads),
-                        fmt::format("Embree, one isosurface, {}", embree_call_name(speed.second)), rate.value, rate.low,
-                        rate.high, kNone, kNone, kNone, kNone, kNone, setup_seconds});
+/// Million rays a second.
+Estimate add_peer_row(Table& table, const std::string& volume, const EmbreeSpeed& embree, RayQuestion question,
+                      const Run& run, double seconds) {
+  const auto [rate, call] = embree.measured(question, run, seconds);
+  table.rows.push_back({volume, double(run.threads),
+                        fmt::format("Embree, one isosurface, {}{}", embree_call_name(call),
+                                    question == RayQuestion::kFirstHit ? kFirstHit : ""),
+                        rate.value, rate.low, rate.high, kNone, kNone, kNone, kNone, kNone, embree.build_seconds()});
+  return rate;
+}
+
+/// First hits of the default tracer and of Embree.
+void add_first_hits(Table& table, const std::string& title, const Volume& volume, const EmbreeSpeed& embree,
+                    float isovalue, const Run& run, double seconds, const SuiteContext& context) {
+  add_row(table, title, run.threads, default_tracer(context) + kFirstHit,
+          first_hit_speed(volume, isovalue, run, seconds, context));
+  if (embree.exists()) add_peer_row(table, title, embree, RayQuestion::kFirstHit, run, seconds);
 }
 
 /// What a set of rays has to look at: a cell is tested where it reaches the isovalue of a ray that crosses it.
@@ -185,11 +157,12 @@ void measure_sizes(const SuiteContext& context, Figures& figures) {
     context.say(fmt::format("gyroid {}", n));
     const std::string title = fmt::format("gyroid {}", n);
     const Volume volume = sample_analytic_field("gyroid", n);
-    const Peer embree(volume, 0.0f, context);
+    const EmbreeSpeed embree(volume, 0.0f, context);
     for (std::size_t t = 0; t < threads.size(); ++t) {
       Run run = context.run;
       run.threads = threads[t];
-      const double seconds = context.budget.share((sizes.size() - s) * threads.size() - t) / double(names.size() + 1);
+      const std::size_t pieces = names.size() + (threads[t] == 1 ? 3 : 1);
+      const double seconds = context.budget.share((sizes.size() - s) * threads.size() - t) / double(pieces);
       for (std::size_t i = 0; i <= names.size(); ++i) {
         Series& series = rates[t * (names.size() + 1) + i];
         Estimate rate;
@@ -200,14 +173,13 @@ void measure_sizes(const SuiteContext& context, Figures& figures) {
           work[i].name = names[i];
           if (t == 0) work[i].points.push_back({double(n), double(speed.counters.cells) / double(speed.counters.rays)});
         } else if (embree.exists()) {
-          const auto found = embree.speed(run, seconds);
-          add_peer_row(figures.all, title, threads[t], found, embree.build_seconds());
-          rate = found.first;
+          rate = add_peer_row(figures.all, title, embree, RayQuestion::kAnyHit, run, seconds);
         }
         series.name = fmt::format("{}, {} thread{}", i < names.size() ? names[i] : "Embree, one isosurface", threads[t],
                                   threads[t] > 1 ? "s" : "");
         if (rate.value > 0.0) series.points.push_back({double(n), rate.value, rate.low, rate.high});
       }
+      if (threads[t] == 1) add_first_hits(figures.all, title, volume, embree, 0.0f, run, seconds, context);
     }
     if (n <= 128) add_touched(figures.untouched, title, volume, context);
   }
@@ -226,35 +198,42 @@ void measure_real(const SuiteContext& context, Figures& figures) {
     const auto& [file, isovalue] = real[v];
     context.say(file);
     // A fifth of all for all of them, before the sizes, which take as long as they take.
-    const double seconds = context.budget.share(5 * count - v) / double(names.size() + 1);
+    const double seconds = context.budget.share(5 * count - v) / double(names.size() + 3);
     const Volume volume = read_volume(context.data_folder + "/" + file);
     for (const std::string& name : names)
       add_row(figures.all, file, run.threads, name, tracer_speed(name, volume, isovalue, run, seconds, context));
-    const Peer embree(volume, isovalue, context);
-    if (embree.exists())
-      add_peer_row(figures.all, file, run.threads, embree.speed(run, seconds), embree.build_seconds());
+    const EmbreeSpeed embree(volume, isovalue, context);
+    if (embree.exists()) add_peer_row(figures.all, file, embree, RayQuestion::kAnyHit, run, seconds);
+    add_first_hits(figures.all, file, volume, embree, isovalue, run, seconds, context);
     add_touched(figures.untouched, file, volume, context);
   }
 }
 
-/// The default tracer's speed beside Embree's, largest and smallest ratio over the rows of one thread.
-std::string beside_embree(const Table& table, const std::string& tracer) {
-  double least = 1e30;
-  double most = 0.0;
+/// A tracer's speed over Embree's, least and most over the rows of one thread whose tracers' names end alike: `of` is
+/// the one's, `asked` what both names end with.
+std::pair<double, double> beside_embree(const Table& table, const std::string& of, std::string_view asked) {
+  std::pair<double, double> found{1e30, 0.0};
   double ours = 0.0;
   for (const auto& row : table.rows) {
     const auto& name = std::get<std::string>(row[2]);
     if (std::get<double>(row[1]) != 1.0) continue;
-    if (name == tracer) ours = std::get<double>(row[3]);
-    if (name.rfind("Embree", 0) != 0) continue;
-    least = std::min(least, ours / std::get<double>(row[3]));
-    most = std::max(most, ours / std::get<double>(row[3]));
+    if (name == fmt::format("{}{}", of, asked)) ours = std::get<double>(row[3]);
+    if (!name.starts_with("Embree") || name.ends_with(kFirstHit) != (asked == kFirstHit)) continue;
+    const double ratio = ours / std::get<double>(row[3]);
+    found = {std::min(found.first, ratio), std::max(found.second, ratio)};
   }
+  return found;
+}
+
+std::string said_beside_embree(const Table& table, const std::string& tracer) {
+  const auto [least, most] = beside_embree(table, tracer, "");
   if (most == 0.0) return "Embree is not in this build: no comparison.";
+  const auto [least_first, most_first] = beside_embree(table, tracer, kFirstHit);
   return fmt::format(
       "On one thread the tracer `{}` does {:.2g} to {:.2g} times as many rays a second, on all level sets at once, as "
-      "Embree does on the triangles of one isosurface.",
-      tracer, least, most);
+      "Embree does on the triangles of one isosurface; {:.2g} to {:.2g} times as many where both are asked for the "
+      "first hit.",
+      tracer, least, most, least_first, most_first);
 }
 
 }  // namespace
@@ -277,7 +256,7 @@ SuiteReport run_trace(const SuiteContext& context) {
       "it. 64 rays from one site for every 64 cells or fewer.";
   if (!context.data_folder.empty() && context.effort != Effort::kSmoke) measure_real(context, figures);
   measure_sizes(context, figures);
-  report.highlights.push_back(beside_embree(figures.all, default_tracer(context)));
+  report.highlights.push_back(said_beside_embree(figures.all, default_tracer(context)));
   report.figures.emplace_back(std::move(figures.sizes));
   report.figures.emplace_back(std::move(figures.work));
   report.figures.emplace_back(std::move(figures.all));

@@ -1,9 +1,11 @@
 #include "tracer_speed.h"
 
 #include <isolux/core/stopwatch.h>
+#include <isolux/raytrace_flat/gather.h>
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <optional>
 
 namespace isolux::bench {
@@ -39,16 +41,16 @@ class DenseSites {
   std::vector<double> distances_;  ///< of random sites' isovalues
 };
 
-}  // namespace
+/// What tracing `sites` counted.
+using Trace = std::function<TraceCounters(const Sites& sites)>;
 
-TracerSpeed tracer_speed(const std::string& tracer, const Volume& volume, float isovalue, const Run& run,
-                         double seconds, const SuiteContext& context) {
-  const auto backend = context.stages.tracers.create(tracer);
+TracerSpeed speed_of(const Trace& trace, const Volume& volume, float isovalue, const Run& run, double seconds,
+                     const SuiteContext& context) {
   const DenseSites dense(volume, isovalue, run, context);
   TracerSpeed speed;
   const auto once = [&](const Sites& sites) {
     const Stopwatch watch;
-    speed.counters = backend->trace(volume, Scene{}, sites, {.rays = kSpeedRays, .bounces = 0}, run).counters;
+    speed.counters = trace(sites);
     return watch.seconds();
   };
   constexpr std::size_t kFew = 64;
@@ -76,6 +78,26 @@ TracerSpeed tracer_speed(const std::string& tracer, const Volume& volume, float 
   } while (rates.size() < 3 || (rates.size() < 9 && all.seconds() < 0.5 * seconds));
   speed.mrays = median(rates);
   return speed;
+}
+
+}  // namespace
+
+TracerSpeed tracer_speed(const std::string& tracer, const Volume& volume, float isovalue, const Run& run,
+                         double seconds, const SuiteContext& context) {
+  const auto backend = context.stages.tracers.create(tracer);
+  const auto trace = [&](const Sites& sites) {
+    return backend->trace(volume, Scene{}, sites, {.rays = kSpeedRays, .bounces = 0}, run).counters;
+  };
+  return speed_of(trace, volume, isovalue, run, seconds, context);
+}
+
+TracerSpeed first_hit_speed(const Volume& volume, float isovalue, const Run& run, double seconds,
+                            const SuiteContext& context) {
+  const GatherSettings settings{.rays = kSpeedRays, .question = RayQuestion::kFirstHit};
+  const auto trace = [&](const Sites& sites) {
+    return gather(volume, sites, settings, run, [](const GatheredRays& /*rays*/) {});
+  };
+  return speed_of(trace, volume, isovalue, run, seconds, context);
 }
 
 std::size_t grown(std::size_t items, double seconds, double wanted) {

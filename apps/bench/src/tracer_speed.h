@@ -25,6 +25,10 @@ struct TracerSpeed {
 [[nodiscard]] TracerSpeed tracer_speed(const std::string& tracer, const Volume& volume, float isovalue, const Run& run,
                                        double seconds, const SuiteContext& context);
 
+/// The same for gather() asked where rays hit first, which is what bounces take.
+[[nodiscard]] TracerSpeed first_hit_speed(const Volume& volume, float isovalue, const Run& run, double seconds,
+                                          const SuiteContext& context);
+
 /// A number of items that takes about `wanted` seconds where `items` took `seconds`.
 [[nodiscard]] std::size_t grown(std::size_t items, double seconds, double wanted);
 
