@@ -9,6 +9,7 @@
 
 #include "path_tracer.h"
 #include "trace_request.h"
+#include "wide/net_mean.h"
 
 namespace isolux {
 namespace {
@@ -66,19 +67,26 @@ class ScalarTracer final : public FlatTracer {
     SampleSet& samples = result.samples;
     samples.sites = std::move(sites);
     samples.channels = is_grey(scene) ? 1 : 3;
-    samples.radiance.resize(samples.size() * std::size_t(samples.channels));
-    samples.variance.resize(samples.size());
     const PathTracer tracer(volume, scene, settings, options_.limits);
-    std::vector<TraceCounters> counters(block_count(samples.size(), kSitesABlock));
-    parallel_blocks(samples.size(), kSitesABlock, run, "trace", [&](const Block& block) {
-      for (std::size_t i = block.begin; i < block.end; ++i)
-        light_site(tracer, settings.rays, PathSampler(run.seed, i), i, samples, counters[block.index]);
+    // Differences of neighbouring strata are too large still, as those of `wide`.
+    wide::light_and_calibrate(samples, run, [&](SampleSet& some, const Run& own) {
+      light(tracer, settings.rays, own, some, result.counters);
     });
-    for (const TraceCounters& part : counters) add(result.counters, part);
     return result;
   }
 
  private:
+  static void light(const PathTracer& tracer, int rays, const Run& run, SampleSet& samples, TraceCounters& counters) {
+    samples.radiance.resize(samples.size() * std::size_t(samples.channels));
+    samples.variance.resize(samples.size());
+    std::vector<TraceCounters> parts(block_count(samples.size(), kSitesABlock));
+    parallel_blocks(samples.size(), kSitesABlock, run, "trace", [&](const Block& block) {
+      for (std::size_t i = block.begin; i < block.end; ++i)
+        light_site(tracer, rays, PathSampler(run.seed, i), i, samples, parts[block.index]);
+    });
+    for (const TraceCounters& part : parts) add(counters, part);
+  }
+
   // A site without a normal has no light: e = 0, and the variance says that nothing is known.
   static void light_site(const PathTracer& tracer, int rays, const PathSampler& numbers, std::size_t site,
                          SampleSet& samples, TraceCounters& counters) {

@@ -1,10 +1,8 @@
 #include <isolux/raytrace_flat/flat_tracer.h>
 
 #include <cstddef>
-#include <cstdint>
 #include <utility>
 #include <variant>
-#include <vector>
 
 #include "bright_light.h"
 #include "bright_parts.h"
@@ -32,15 +30,9 @@ class WideTracer final : public FlatTracer {
     TraceResult result;
     SampleSet& samples = result.samples;
     samples.sites = std::move(sites);
-    light(volume, scene, settings, run, samples, result.counters);
-    SampleSet again;
-    const std::vector<std::size_t> probes = wide::choose_probes(samples.sites);
-    again.sites = some_of(samples.sites, probes);
-    Run other = run;
-    other.seed = wide::probe_seed(run.seed);
-    other.progress = {};
-    light(volume, scene, settings, other, again, result.counters);
-    wide::calibrate_variance(samples, probes, again);
+    wide::light_and_calibrate(samples, run, [&](SampleSet& some, const Run& own) {
+      light(volume, scene, settings, own, some, result.counters);
+    });
     return result;
   }
 

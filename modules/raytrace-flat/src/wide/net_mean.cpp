@@ -129,4 +129,16 @@ void calibrate_variance(SampleSet& samples, std::span<const std::size_t> probes,
 
 std::uint64_t probe_seed(std::uint64_t seed) { return mix_bits(seed ^ 0x9E3779B97F4A7C15ull); }
 
+void light_and_calibrate(SampleSet& samples, const Run& run, const LightSamples& light) {
+  light(samples, run);
+  const std::vector<std::size_t> probes = choose_probes(samples.sites);
+  SampleSet again{
+      .sites = some_of(samples.sites, probes), .channels = samples.channels, .radiance = {}, .variance = {}};
+  Run other = run;
+  other.seed = probe_seed(run.seed);
+  other.progress = {};
+  light(again, other);
+  calibrate_variance(samples, probes, again);
+}
+
 }  // namespace isolux::wide

@@ -1,10 +1,12 @@
 #pragma once
 
+#include <isolux/core/run.h>
 #include <isolux/core/sample_set.h>
 #include <isolux/core/vec.h>
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -56,5 +58,11 @@ void calibrate_variance(SampleSet& samples, std::span<const std::size_t> probes,
 
 /// The seed of the second results.
 [[nodiscard]] std::uint64_t probe_seed(std::uint64_t seed);
+
+/// What lights samples whose sites are set, by the seed and the progress of a run.
+using LightSamples = std::function<void(SampleSet& samples, const Run& run)>;
+
+/// Lights all samples, and the probes among them once more, to calibrate the variances.
+void light_and_calibrate(SampleSet& samples, const Run& run, const LightSamples& light);
 
 }  // namespace isolux::wide
