@@ -1,8 +1,10 @@
 // Environment pictures against what their formats' definitions say. The files are written here, byte by byte.
+#include <ImfRgbaFile.h>
 #include <gtest/gtest.h>
 #include <isolux/bake/scene_file.h>
 #include <isolux/core/error.h>
 
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <fstream>
@@ -43,15 +45,17 @@ struct PixelBox {
   std::int32_t left, top, right, bottom;  ///< all inclusive
 };
 
-/// An uncompressed OpenEXR file of floats, which holds y in green and x in red. This machine is little endian.
-std::string exr(const PixelBox& data, const PixelBox& display, const std::string& more_attributes = {}) {
+/// An uncompressed OpenEXR file of floats, which holds y in green and x in red unless its channels have other names.
+/// This machine is little endian.
+std::string exr(const PixelBox& data, const PixelBox& display, const std::string& more_attributes = {},
+                float brightness = 1.0f, const std::array<const char*, 3>& names = {"B", "G", "R"}) {
   const auto raw = [](const auto& value) { return std::string(reinterpret_cast<const char*>(&value), sizeof(value)); };
   const auto name = [](const char* text) { return std::string(text) + '\0'; };
   const auto attribute = [&](const char* what, const char* type, const std::string& value) {
     return name(what) + name(type) + raw(std::int32_t(value.size())) + value;
   };
   std::string channels;
-  for (const char* channel : {"B", "G", "R"})
+  for (const char* channel : names)
     channels +=
         name(channel) + raw(std::int32_t(2)) + std::string(4, '\0') + raw(std::int32_t(1)) + raw(std::int32_t(1));
   std::string file =
@@ -68,9 +72,9 @@ std::string exr(const PixelBox& data, const PixelBox& display, const std::string
     file += raw(std::uint64_t(file.size() + std::size_t(height - y) * 8 + std::size_t(y) * (row + 8)));
   for (int y = data.top; y <= data.bottom; ++y) {
     file += raw(std::int32_t(y)) + raw(std::int32_t(row));
-    for (int x = 0; x < width; ++x) file += raw(0.5f);
-    for (int x = 0; x < width; ++x) file += raw(float(100 + y));
-    for (int x = data.left; x <= data.right; ++x) file += raw(float(100 + x));
+    for (int x = 0; x < width; ++x) file += raw(brightness * 0.5f);
+    for (int x = 0; x < width; ++x) file += raw(brightness * float(100 + y));
+    for (int x = data.left; x <= data.right; ++x) file += raw(brightness * float(100 + x));
   }
   return file;
 }
@@ -93,6 +97,38 @@ TEST(ExrEnvironment, IsTheDisplayWindowBlackWithoutData) {
   expect_display_window({-3, 5, 8, 10}, {-3, 5, 8, 10});
   expect_display_window({0, 0, 11, 5}, {0, 0, 11, 11});
   expect_display_window({-2, 4, 3, 6}, {-5, 1, 6, 8});
+}
+
+TEST(ExrEnvironment, MayBeBrighterThanHalfFloatsTell) {
+  const ImageEnvironment image = Picture(".exr", exr({0, 0, 3, 1}, {0, 0, 3, 1}, {}, 1e6f)).read();
+  EXPECT_EQ(image.pixels[5], Vec3f(101e6f, 101e6f, 0.5e6f));
+}
+
+TEST(ExrEnvironment, MayBeGreyOrLackChannels) {
+  const auto of = [](const std::array<const char*, 3>& names) {
+    return Picture(".exr", exr({0, 0, 3, 1}, {0, 0, 3, 1}, {}, 1.0f, names));
+  };
+  EXPECT_EQ(of({"A", "Y", "Z"}).read().pixels[6], Vec3f(101.0f));
+  EXPECT_EQ(of({"A", "G", "Z"}).read().pixels[6], Vec3f(0.0f, 101.0f, 0.0f));
+  EXPECT_NE(of({"A", "Z", "left.R"}).refusal().find("R, G, B or Y"), std::string::npos);
+}
+
+TEST(ExrEnvironment, MayBeLuminanceAndChroma) {
+  const std::string path = ::testing::TempDir() + "isolux_chroma.exr";
+  {
+    const std::vector<Imf::Rgba> pixels(8 * 4, Imf::Rgba(0.75f, 0.5f, 0.25f));
+    Imf::RgbaOutputFile file(path.c_str(), 8, 4, Imf::WRITE_YC);
+    file.setFrameBuffer(pixels.data(), 1, 8);
+    file.writePixels(4);
+  }
+  const ImageEnvironment image = read_environment_image(path);
+  std::filesystem::remove(path);
+  ASSERT_EQ(image.pixels.size(), 32u);
+  for (const Vec3f& p : image.pixels) {
+    EXPECT_NEAR(p.x, 0.75f, 2e-3f);
+    EXPECT_NEAR(p.y, 0.5f, 2e-3f);
+    EXPECT_NEAR(p.z, 0.25f, 2e-3f);
+  }
 }
 
 TEST(ExrEnvironment, LeavesOutDataBeyondTheDisplayWindow) {
