@@ -69,7 +69,7 @@ BakeSettings bake_settings(const BakeOptions& options, const Stages& stages) {
                  {{"sampler", &settings.sampler.settings},
                   {"tracer", &settings.tracer.settings},
                   {"resampler", &settings.resampler.settings}});
-  settings = with_defaults(std::move(settings), stages);
+  settings = with_backends(std::move(settings), stages);
   require_choice(stages.samplers, settings.sampler);
   require_choice(stages.tracers, settings.tracer);
   require_choice(stages.resamplers, settings.resampler);

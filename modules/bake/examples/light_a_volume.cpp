@@ -10,8 +10,8 @@ int main(int argc, char** argv) try {
   const isolux::Volume volume = isolux::read_volume(argc > 1 ? argv[1] : "gen:two-spheres:16");
   const isolux::Scene scene;  // a white sky and albedo 0.8; read_scene() reads others
   const isolux::Stages stages = isolux::builtin_stages();
-  const isolux::BakeSettings settings = with_defaults({}, stages);
-  const isolux::Run run;  // all threads, seed 1
+  const isolux::BakeSettings settings;  // 64 rays for each texel and all their reflections
+  const isolux::Run run;                // all threads, seed 1
   isolux::BakeResult result = bake(volume, scene, settings, stages, run);
   const isolux::LightReader reader(volume, result.light);
   const isolux::Vec3 middle = 0.5 * isolux::Vec3(volume.lattice().size - 1);

@@ -176,8 +176,8 @@ Lattice texel_lattice(const Lattice& volume, const BakeSettings& settings) {
   return cell_lattice(volume, texels_by_ratio(volume, ratio));
 }
 
-BakeSettings with_defaults(BakeSettings settings, const Stages& stages) {
-  choose_resampling(settings);
+BakeSettings with_backends(BakeSettings settings, const Stages& stages) {
+  name_resampling(settings);
   if (settings.bounce_method == BounceMethod::kDefault) {
     // Sites drawn by need are traced in two halves, the second where the first one's light changes: by paths.
     const bool keeps = settings.resampler.name == "direct" ||
@@ -196,9 +196,9 @@ BakeSettings with_defaults(BakeSettings settings, const Stages& stages) {
 }
 
 BakeSettings with_defaults(BakeSettings settings, const Lattice& volume, const Stages& stages) {
-  if (settings.texels && settings.texels_a_cell == 0.0 && settings.lattice == TexelLattice::kCells)
-    settings.texels_a_cell = density_of(volume, *settings.texels);
-  return with_defaults(std::move(settings), stages);
+  settings = with_backends(std::move(settings), stages);
+  choose_density(settings, volume);
+  return settings;
 }
 
 BakeResult bake(const Volume& volume, const Scene& scene, const BakeSettings& given, const Stages& stages,

@@ -191,7 +191,7 @@ class Judge {
 
 /// Whether the bake's light will be read with near-field terms.
 bool has_near_field(BakeSettings settings, const Stages& stages) {
-  choose_resampling(settings);
+  name_resampling(settings);
   return settings.texel_sites == TexelSites::kAll &&
          stages.resamplers.create(settings.resampler.name, settings.resampler.settings)->has_near_field();
 }

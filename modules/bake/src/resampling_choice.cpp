@@ -32,9 +32,16 @@ bool one_isovalue(const BakeSettings& settings) {
   return settings.isovalues && settings.isovalues->low == settings.isovalues->high;
 }
 
+/// Texels a cell and axis, the axes' geometric mean.
+double density_of(const Lattice& volume, const Index3& texels) {
+  double density = 1.0;
+  for (int a = 0; a < 3; ++a) density *= double(texels[a]) / double(std::max(volume.size[a] - 1, 1));
+  return std::round(std::cbrt(density) * 1e6) / 1e6;  // the root's rounding must not cross a limit
+}
+
 }  // namespace
 
-void choose_resampling(BakeSettings& settings) {
+void name_resampling(BakeSettings& settings) {
   const bool fit = settings.resampler.name == "fit";
   if (settings.sampler.name.empty()) {
     if (fit) {
@@ -45,12 +52,19 @@ void choose_resampling(BakeSettings& settings) {
   }
   if (settings.resampler.name.empty())
     settings.resampler.name = settings.sampler.name == "texels" ? "direct" : "cell_grid";
+}
+
+void choose_density(BakeSettings& settings, const Lattice& volume) {
+  const bool fit = settings.resampler.name == "fit";
   const bool one = one_isovalue(settings);
   const bool range = settings.isovalues && !one;
   const FitDensity& density = one ? kOneIsovalue : range ? kRange : kSweep;
   if (settings.texels_a_cell == 0.0) {
-    const bool usual = fit && !settings.texels && settings.lattice == TexelLattice::kCells;
-    settings.texels_a_cell = usual ? density.usual : 1.0;
+    const bool in_cells = settings.lattice == TexelLattice::kCells;
+    if (settings.texels && in_cells)
+      settings.texels_a_cell = density_of(volume, *settings.texels);
+    else
+      settings.texels_a_cell = fit && in_cells ? density.usual : 1.0;
   }
   if (!fit) return;
   const bool fine = settings.texels_a_cell > density.slopes;
@@ -62,12 +76,6 @@ void choose_resampling(BakeSettings& settings) {
   settings.sites_a_cell = settings.isovalues
                               ? kKnownSites
                               : (fine ? kFineSites : kFitSites) * std::pow(std::max(1.0, settings.texels_a_cell), 3);
-}
-
-double density_of(const Lattice& volume, const Index3& texels) {
-  double density = 1.0;
-  for (int a = 0; a < 3; ++a) density *= double(texels[a]) / double(std::max(volume.size[a] - 1, 1));
-  return std::round(std::cbrt(density) * 1e6) / 1e6;  // the root's rounding must not cross a limit
 }
 
 double sites_a_texel(const Lattice& volume, const Lattice& texels, const BakeSettings& settings) {

@@ -5,13 +5,13 @@
 
 namespace isolux {
 
-/// Names the sampler and the resampler where the user has not, and fills in the texels and sites that they want.
-void choose_resampling(BakeSettings& settings);
+/// Names the sampler and the resampler where the user has not.
+void name_resampling(BakeSettings& settings);
 
-/// Texels a cell and axis, the axes' geometric mean.
-[[nodiscard]] double density_of(const Lattice& volume, const Index3& texels);
+/// Fills in how many texels and sites they want, and what the fit tells of a texel. \pre name_resampling()
+void choose_density(BakeSettings& settings, const Lattice& volume);
 
-/// settings.sites_a_cell by texel; 1 where it is 0. \pre choose_resampling()
+/// settings.sites_a_cell by texel; 1 where it is 0. \pre choose_density()
 [[nodiscard]] double sites_a_texel(const Lattice& volume, const Lattice& texels, const BakeSettings& settings);
 
 /// How far texels are filled: everywhere, or about known level sets only, which leaves the rest 0.

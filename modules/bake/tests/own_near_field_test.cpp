@@ -27,7 +27,7 @@ BakeSettings few_rays(int bounces) {
 /// Largest difference between what is read at the sites and the texels' values there.
 double off_at_sites(const Volume& volume, const IlluminationGrid& light, const BakeSettings& given, OuterSide outer) {
   const Stages stages = builtin_stages();
-  const Sites sites = find_sites(volume, outer, with_defaults(given, stages), stages, {}).sites;
+  const Sites sites = find_sites(volume, outer, with_defaults(given, volume.lattice(), stages), stages, {}).sites;
   const LightReader reader(volume, light);
   const LightReader plain(volume, without_terms(light));
   double most = 0.0;

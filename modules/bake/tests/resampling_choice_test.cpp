@@ -24,14 +24,23 @@ TEST(ResamplingChoice, IsTheSameForTexelsAndTexelsACell) {
     for (const int texels : {20, 32, 36, 40, 48, 64}) {
       BakeSettings by_texels = fitted(isovalues);
       by_texels.texels = Index3(texels);
-      by_texels = with_defaults(by_texels, volume.lattice(), stages);
+      // As the command does, which names backends before it has the volume.
+      by_texels = with_defaults(with_backends(by_texels, stages), volume.lattice(), stages);
       BakeSettings by_density = fitted(isovalues);
       by_density.texels_a_cell = double(texels) / 32.0;
-      by_density = with_defaults(by_density, stages);
+      by_density = with_defaults(by_density, volume.lattice(), stages);
       EXPECT_EQ(by_texels.resampler.settings, by_density.resampler.settings) << texels;
       EXPECT_NEAR(by_texels.sites_a_cell, by_density.sites_a_cell, 1e-9) << texels;
     }
   }
+}
+
+// Where a size is chosen after backends are named.
+TEST(ResamplingChoice, LeavesTexelsOpenUntilThereIsAVolume) {
+  const BakeSettings named = with_backends(fitted({}), builtin_stages());
+  EXPECT_EQ(named.texels_a_cell, 0.0);
+  EXPECT_EQ(named.sites_a_cell, 0.0);
+  EXPECT_TRUE(named.resampler.settings.empty());
 }
 
 // By the mean of the axes: 2 texels a cell on one axis and half a texel on another are one.

@@ -111,13 +111,14 @@ struct BakeResult {
   std::map<std::string, double> seconds;  ///< by stage: sites, trace, bounces (of kIterated), resample
 };
 
-/// `settings` with every backend named and what they want filled in (docs/resampling.md): sites at the texels and the
-/// direct resampler; for the least-squares fit stratified sites, or with known isovalues sites on their level sets, and
-/// 1.15 texels an axis, 1.7 for one isovalue; where a number of samples or another sampler is asked for,
-/// low-discrepancy sites and Shepard's interpolation over a cell grid; the default tracer.
-[[nodiscard]] BakeSettings with_defaults(BakeSettings settings, const Stages& stages);
-/// The same for a volume: what the fit tells of a texel and how many sites it wants then goes by settings.texels as it
-/// goes by texels_a_cell.
+/// `settings` with every backend and the bounce method named: sites at the texels and the direct resampler; for the
+/// least-squares fit stratified sites, or with known isovalues sites on their level sets; where a number of samples or
+/// another sampler is asked for, low-discrepancy sites and Shepard's interpolation over a cell grid; the default
+/// tracer.
+[[nodiscard]] BakeSettings with_backends(BakeSettings settings, const Stages& stages);
+/// The same, and filled in what they want of a volume (docs/resampling.md): texels a cell, by settings.texels where
+/// these are given, else for the fit .73 an axis, .97 for one isovalue and .8 for a range; sites a cell; and what the
+/// fit tells of a texel.
 [[nodiscard]] BakeSettings with_defaults(BakeSettings settings, const Lattice& volume, const Stages& stages);
 /// Whether reflections are iterated, if reading them allows it.
 [[nodiscard]] inline bool iterates(const BakeSettings& settings) {
