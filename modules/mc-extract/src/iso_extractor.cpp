@@ -36,8 +36,9 @@ class IsoExtractor::Implementation {
     const mc::MeshMemory memory = mc::reserve_mesh(mesh, size);
     if (size.triangles == 0) return;
     mc::RowMarch::Fresh fresh;
-    if (mesh.n_edges() < size.edges) {
-      const mc::MeshSize held{.vertices = mesh.n_vertices(), .edges = mesh.n_edges(), .triangles = mesh.n_faces()};
+    // Of each kind: a surface in many small parts has more vertices than a larger one of as many edges.
+    const mc::MeshSize held{.vertices = mesh.n_vertices(), .edges = mesh.n_edges(), .triangles = mesh.n_faces()};
+    if (held.vertices < size.vertices || held.edges < size.edges || held.triangles < size.triangles) {
       fresh.reach = [&](const mc::MeshSize& part) { mc::reach(mesh, part); };
       fresh.bring = [&memory, held](const mc::MeshSize& before, const mc::MeshSize& after) {
         mc::bring_huge_pages(memory, larger(before, held), after);

@@ -145,6 +145,28 @@ TEST(IsoExtractor, UsesAMeshAgainWithoutATrace) {
   }
 }
 
+// With fewer edges a mesh may have more vertices, and so on.
+TEST(IsoExtractor, UsesAMeshAgainWhateverItHasMoreOf) {
+  int grown[3] = {};
+  for (std::uint64_t seed = 0; seed < 8; ++seed) {
+    const Volume volume = noise(Index3(8, 6, 5), seed, 256);
+    IsoExtractor extractor(volume);
+    IsoMesh kept;
+    for (int step = 0; step < 200; ++step) {
+      const ExtractSettings settings{.isovalue = float(step * 37 % 256)};
+      IsoMesh expected;
+      extractor.extract(settings, {}, expected);
+      const bool more[3] = {expected.n_vertices() > kept.n_vertices(), expected.n_edges() > kept.n_edges(),
+                            expected.n_faces() > kept.n_faces()};
+      for (int i = 0; i < 3; ++i) grown[i] += more[i] && !more[(i + 1) % 3] ? 1 : 0;
+      extractor.extract(settings, {}, kept);
+      ASSERT_TRUE(identical(kept, expected)) << seed << ' ' << step;
+    }
+  }
+  EXPECT_GT(grown[0], 0);  // vertices without edges
+  EXPECT_GT(grown[2], 0);  // triangles without vertices
+}
+
 TEST(IsoExtractor, WritesOverAMeshThatIsTooSmall) {
   // Vertices of the first layers are written where the last mesh's lay, and moved when it has to grow. So large that
   // each array has pages of 2 MB.
