@@ -52,10 +52,23 @@ void require_settings(const BakeSettings& settings) {
   }
 }
 
-void require_lightable(const Volume& volume, const BakeSettings& settings) {
+ValueRange require_traceable(const Volume& volume) {
+  // Sums of a cell's values are taken in floats, and divided by.
+  constexpr double kLeast = 0x1p-110;
+  constexpr double kMost = 0x1p127;
   require_usable(volume);
-  const std::optional<ValueRange>& wanted = settings.isovalues;
   const ValueRange range = value_range(volume);
+  const double span = double(range.high) - double(range.low);
+  if (span == 0.0 || (span >= kLeast && span <= kMost)) return range;
+  throw InvalidInput(fmt::format(
+      "{}: values from {} to {} span {:.3g}; allowed are spans from {:.2g} to {:.2g}: give them another unit, or "
+      "replace what stands for missing ones",
+      volume.name, range.low, range.high, span, kLeast, kMost));
+}
+
+void require_lightable(const Volume& volume, const BakeSettings& settings) {
+  const ValueRange range = require_traceable(volume);
+  const std::optional<ValueRange>& wanted = settings.isovalues;
   if (range.low == range.high) {
     throw InvalidInput(
         fmt::format("{}: every voxel is {}; a constant volume has no level set to light", volume.name, range.low));

@@ -30,8 +30,12 @@ inline constexpr int kFirstRays = 16;
 /// \throw InvalidInput for numbers that mean nothing, and for a tracer that iterated reflections would not use
 void require_settings(const BakeSettings& settings);
 
-/// \throw InvalidInput if the volume is not usable or constant, the isovalues asked for lie outside its values,
-/// or the texels take more memory than the machine has
+/// The range of the values. \throw InvalidInput if the volume is not usable, or its values lie so close together or so
+/// far apart that floats do not hold what rays are worked out by
+ValueRange require_traceable(const Volume& volume);
+
+/// \throw InvalidInput if the volume is not traceable or constant, the isovalues asked
+/// for lie outside its values, or the texels take more memory than the machine has
 void require_lightable(const Volume& volume, const BakeSettings& settings);
 
 /// What a sampler is asked for, but for the number of sites a texel. Of known isovalues sites at texels are those that

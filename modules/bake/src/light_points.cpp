@@ -8,6 +8,7 @@
 #include <glm/geometric.hpp>
 #include <utility>
 
+#include "bake_parts.h"
 #include "residual_filter.h"
 #include "standard_error.h"
 
@@ -63,7 +64,7 @@ void refine(SampleSet& samples, const LightReader& light, const Run& run) {
 PointLight trace_points(const Volume& volume, const Scene& scene, std::span<const Vec3f> world_positions,
                         const TraceSettings& settings, const BackendChoice& tracer, const Stages& stages,
                         const Run& run, const LightReader* guess) {
-  require_usable(volume);
+  (void)require_traceable(volume);
   const auto backend = stages.tracers.create(tracer.name, tracer.settings);
   SitesOfPoints points = sites_of(volume, scene, world_positions, settings.gradient);
   PointLight light;

@@ -62,7 +62,9 @@ void FitRows::measure(const NearField& near_field, const SampleSet& set, const T
         for (std::size_t r = starts[c]; r < starts[c + 1]; ++r) {
           const std::uint32_t sample = samples_[r];
           rows_[r] = {.place = cells.place(set.sites.positions[sample]).in_cell, .feature = {}, .openness = {}};
-          if (texels.terms().slopes) rows_[r].feature[0] = set.sites.isovalues[sample] - texels.reference(along, c);
+          if (texels.terms().slopes)
+            rows_[r].feature[0] =
+                float(double(set.sites.isovalues[sample]) * texels.scale()) - texels.reference(along, c);
         }
       }
     }

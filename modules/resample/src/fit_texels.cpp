@@ -52,8 +52,10 @@ void FitTexels::number(std::span<const std::uint32_t> starts) {
 void FitTexels::measure(const Volume& volume, const Run& run) {
   const NearField near_field(volume);
   const IndexToWorld to_volume = index_to_index(texels_, volume.lattice());
-  const ValueRange range = value_range(volume);
-  const float least = std::max(1e-4f * (range.high - range.low), 0x1p-124f);
+  const ValueRange values = value_range(volume);
+  const double range = double(values.high) - double(values.low);
+  if (range > 0.0) scale_ = std::exp2(-std::floor(std::log2(range)));
+  const double least = range > 0.0 ? 1e-4 * range * scale_ : 1.0;
   const Index3 points = volume.lattice().size;
   const Vec3 reach = glm::abs(to_volume.axes[0]) + glm::abs(to_volume.axes[1]) + glm::abs(to_volume.axes[2]);
   const auto nx = std::size_t(texels_.size.x);
@@ -68,7 +70,7 @@ void FitTexels::measure(const Volume& volume, const Run& run) {
       const std::size_t j = t / nx % ny;
       const std::size_t k = t / (nx * ny);
       const Vec3 centre = to_volume.world({double(t % nx), double(j), double(k)});
-      isovalues_[n] = float(near_field.field().value(centre));
+      isovalues_[n] = float(near_field.field().value(centre) * scale_);
       const Vec3 normal = terms_.normals ? near_field.ahead(centre).downhill : Vec3(0.0);
       for (int a = 0; terms_.normals && a < 3; ++a) normals_[std::size_t(a)][n] = float(normal[a]);
       if (!terms_.slopes) continue;
@@ -83,7 +85,8 @@ void FitTexels::measure(const Volume& volume, const Run& run) {
           smallest = std::min(smallest, *a);
           largest = std::max(largest, *b);
         }
-      inverse_breadths_[n] = 1.0f / std::max(0.5f * (largest - smallest), least);
+      const double breadth = 0.5 * (double(largest) - double(smallest)) * scale_;
+      inverse_breadths_[n] = float(1.0 / std::max(breadth, least));
     }
   });
 }

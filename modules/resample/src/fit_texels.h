@@ -24,18 +24,21 @@ class FitTexels {
   [[nodiscard]] std::size_t size() const { return offsets_.size(); }
   /// Where the used texels lie in the whole grid.
   [[nodiscard]] std::span<const std::size_t> offsets() const { return offsets_; }
-  /// One over the isovalue span that counts as one in a texel's slope: half the range of f over the texel's support. 0
-  /// without slopes.
+  /// What isovalues are multiplied by here: a power of two that makes the volume's range about one, so that floats hold
+  /// their differences whatever the volume's unit.
+  [[nodiscard]] double scale() const { return scale_; }
+  /// One over the isovalue span, scaled, that counts as one in a texel's slope: half the range of f over the texel's
+  /// support. 0 without slopes.
   [[nodiscard]] std::span<const float> inverse_breadths() const { return inverse_breadths_; }
   [[nodiscard]] const FitTerms& terms() const { return terms_; }
   /// The cells of a row along x but for their samples.
   [[nodiscard]] wide::FitCells cells_along(int j, int k) const;
   [[nodiscard]] wide::FitCentres centres() const;
-  /// The isovalue from which those of a cell's samples count; cells as in cells_along().
+  /// The isovalue, scaled, from which those of a cell's samples count; cells as in cells_along().
   [[nodiscard]] float reference(const wide::FitCells& cells, std::size_t cell) const {
     return isovalues_[cells.texels[0][cell]];
   }
-  /// Planes of numbers as samples' features want them: slopes over the isovalue itself, and the normals from which the
+  /// Planes of numbers as samples' features want them: slopes over the scaled isovalue, and the normals from which the
   /// numbers along them count moved into the values.
   [[nodiscard]] std::vector<float> moved(std::span<const float> numbers, const Run& run) const;
   /// The transpose of moved(), in place.
@@ -51,7 +54,8 @@ class FitTexels {
   FitTerms terms_;
   std::vector<std::uint32_t> number_;  ///< of every texel of the grid
   std::vector<std::size_t> offsets_;
-  std::vector<float> isovalues_;  ///< f at the texel centres
+  double scale_ = 1.0;
+  std::vector<float> isovalues_;  ///< f at the texel centres, scaled
   std::vector<float> inverse_breadths_;
   std::array<std::vector<float>, 3> normals_;  ///< of the level sets through the texel centres, towards lower values;
                                                ///< or none

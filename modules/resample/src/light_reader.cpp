@@ -145,7 +145,7 @@ LightReader::LightReader(const Volume& volume, const IlluminationGrid& light, Te
   if (detail.texel_light == TexelLight::kOwn) take_off_near_field(volume, impl->offsets, run);
   const ValueRange all = value_range(volume);
   const ValueRange lit = detail.isovalues.value_or(all);
-  if (impl->sloped) impl->reference = 0.5f * (std::max(all.low, lit.low) + std::min(all.high, lit.high));
+  if (impl->sloped) impl->reference = 0.5f * std::max(all.low, lit.low) + 0.5f * std::min(all.high, lit.high);
   if (impl->sloped || impl->turned) move_to_isovalue(impl->offsets, impl->near_field, impl->reference, run);
   if (storage == TexelStorage::kBricks && (lit.low > all.low || lit.high < all.high)) {
     LightBricks bricks = make_light_bricks(volume, impl->offsets, lit);

@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+#include <isolux/core/error.h>
 #include <isolux/core/parallel.h>
 #include <isolux/resample/resampler.h>
 
@@ -153,7 +155,7 @@ class Fit final : public Resampler {
       const auto number = [&](std::size_t k) { return x.numbers[k * texels.size() + n]; };
       result.lit[t] = 1;
       result.grid.values[at] = prior.numbers[n] + number(0);
-      if (terms.slopes) detail.slopes[at] = number(1) * texels.inverse_breadths()[n];
+      if (terms.slopes) detail.slopes[at] = slope_of(number(1) * texels.inverse_breadths()[n], texels.scale());
       for (std::size_t a = 0; terms.normals && a < 3; ++a)
         detail.normal_slopes[a][at] = number(terms.first_normal() + a);
     }
@@ -162,6 +164,17 @@ class Fit final : public Resampler {
       if (channels == 1) weight = Vec3f(float(x.terms[t]));
       weight[channel] = float(x.terms[t]);
     }
+  }
+
+  /// Per unit of the volume's isovalues.
+  [[nodiscard]] static float slope_of(float scaled, double scale) {
+    const double slope = double(scaled) * scale;
+    if (!(std::fabs(slope) <= double(std::numeric_limits<float>::max())))
+      throw InvalidInput(
+          fmt::format("light that changes by {:.3g} per unit of the volume's values is beyond a light file's floats; "
+                      "allowed are resampler.slopes=false, or values in another unit",
+                      slope));
+    return float(slope);
   }
 
   /// Root mean square of what no texture can say of the light, of the light's own; a typical value on real volumes.
