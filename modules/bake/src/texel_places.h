@@ -8,6 +8,8 @@
 #include <span>
 #include <vector>
 
+#include "texel_positions.h"
+
 namespace isolux {
 
 /// Which texels sites sit at: a bit a texel in place of the sites' positions, for as long as these are not wanted.
@@ -23,11 +25,8 @@ class TexelPlaces {
 
  private:
   TexelPlaces(const Lattice& volume, const Lattice& texels);
-  [[nodiscard]] Vec3f position(std::size_t texel) const;
 
-  Index3 size_;
-  IndexToWorld to_volume_;
-  Vec3f last_;
+  TexelPositions positions_;
   std::vector<bool> has_site_;
 };
 

@@ -2,15 +2,14 @@
 
 #include <utility>
 
-#include "grid_index.h"
+#include "texel_positions.h"
 
 namespace isolux {
 
 Sites TexelSiteMaker::make(std::span<const std::size_t> texels, std::vector<std::uint8_t>* lit) const {
-  const IndexToWorld to_volume = index_to_index(request_.texels, volume_.lattice());
+  const TexelPositions places(volume_.lattice(), request_.texels);
   std::vector<Vec3f> positions(texels.size());
-  for (std::size_t i = 0; i < texels.size(); ++i)
-    positions[i] = Vec3f(to_volume.world(Vec3(index_of(request_.texels.size, texels[i]))));
+  for (std::size_t i = 0; i < texels.size(); ++i) positions[i] = places.of(texels[i]);
   std::vector<Vec3f> wanted;
   for (std::size_t i = 0; i < texels.size(); ++i)
     if (request_.only == nullptr || (*request_.only)[texels[i]]) wanted.push_back(positions[i]);

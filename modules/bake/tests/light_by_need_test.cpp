@@ -5,7 +5,9 @@
 #include <isolux/volume_io/read.h>
 
 #include <cmath>
+#include <span>
 #include <utility>
+#include <vector>
 
 #include "rms_difference.h"
 
@@ -136,6 +138,25 @@ TEST(LightByNeed, TracesEveryTexelWhereLightIsRough) {
   const double found = rms_difference(result.light, bake(volume, Scene{}, settings, builtin_stages(), other).light);
   EXPECT_LT(found, 1.3 * result.rmse_estimate);
   EXPECT_GT(found, result.rmse_estimate / 1.3);
+}
+
+// Oblique axes put the voxels of the box's faces beyond it by a rounding.
+TEST(LightByNeed, LightsTheVoxelsOfTiltedVolumes) {
+  Volume volume = read_volume("gen:gyroid:17");
+  for (const double angle : {0.2, 0.5, 1.3}) {
+    Lattice tilted = volume.lattice();
+    const double c = 0.0625 * std::cos(angle);
+    const double s = 0.0625 * std::sin(angle);
+    tilted.frame.axes = Mat3(c, s, 0.0, -s, c, 0.0, 0.3 * s, 0.0, c);
+    const std::span<const float> values = volume.values.values();
+    volume.values = Grid<float>(tilted, std::vector<float>(values.begin(), values.end()));
+    BakeSettings needed = by_need(0.03);
+    needed.lattice = TexelLattice::kVoxels;
+    BakeSettings every = needed;
+    every.texel_sites = TexelSites::kAll;
+    const IlluminationGrid expected = bake(volume, {}, every, builtin_stages(), {}).light;
+    EXPECT_LT(rms_difference(bake(volume, {}, needed, builtin_stages(), {}).light, expected), 0.05) << angle;
+  }
 }
 
 TEST(LightByNeed, GivesTheSameBitsOnAnyNumberOfThreads) {
