@@ -187,6 +187,31 @@ TEST(WideTracer, SaysItsOwnVariance) {
   EXPECT_GT(error.rms, estimate / 1.3);
 }
 
+// All the noise is in a few sites of the penumbra, of which hardly a probe is one.
+TEST(WideTracer, SaysTheNoiseOfSmallLamps) {
+  const Volume volume = gyroid(24);
+  const Sites sites = box_sites(volume, 8000, OuterSide::kLower);
+  const auto wide = tracers().create("wide");
+  const SphereLight ball{.center = Vec3(2.4, 2.0, 1.6), .radius = 0.04f, .radiance = Vec3f(900.0f)};
+  for (const Light& lamp : {Light(SunLight{.direction = {1.0f, -1.0f, 1.0f}}), Light(ball)}) {
+    Scene scene = furnace(0.0f);
+    scene.environment = UniformEnvironment{Vec3f(0.0f)};
+    scene.lights = {lamp};
+    const auto light = [&](int rays, std::uint64_t seed) {
+      return wide->trace(volume, scene, sites, {.rays = rays, .bounces = 0}, {.seed = seed}).samples;
+    };
+    const std::vector<float> truth = light(1024, 99).radiance;
+    for (std::uint64_t seed = 1; seed <= 6; ++seed) {
+      const SampleSet samples = light(16, seed);
+      double variance = 0.0;
+      for (const float v : samples.variance) variance += double(v) / double(samples.size());
+      const ErrorOfE error = error_of(samples, [&](std::size_t i) { return double(truth[i]); });
+      EXPECT_LT(error.rms, 1.8 * std::sqrt(variance)) << seed;
+      EXPECT_GT(error.rms, std::sqrt(variance) / 1.8) << seed;
+    }
+  }
+}
+
 TEST(WideTracer, RefusesSitesWithoutNormals) {
   const Volume volume = gyroid(8);
   Sites sites = box_sites(volume, 3, OuterSide::kLower);
