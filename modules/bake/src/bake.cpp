@@ -22,7 +22,7 @@
 namespace isolux {
 namespace {
 
-/// More rays than a small bake says an error takes: it knows its own error to some percent.
+/// More rays than a bake says an error takes: it knows its own error to some percent.
 constexpr double kMargin = 1.15;
 /// Where iteration took no more, paths to the same error, ten to thirty times as many rays, are still a matter of
 /// seconds.
@@ -75,23 +75,40 @@ bool wants_paths(const BakeSettings& settings, const BakeResult& iterated) {
          iterated.counters.rays <= kMostRaysOnceMore && !reading_allows(settings.target_rmse, iterated.reading_error);
 }
 
-/// One number of rays for all sites, from what a small bake shows.
-BakeSettings with_rays_for_target(const Volume& volume, const Scene& scene, BakeSettings settings,
-                                  const FoundSites& found, const Stages& stages, const Run& run, double& seconds) {
+/// By what to multiply the rays of a bake so that their noise is what an error allows; 0 where it is.
+double more_rays_for(double target_rmse, const BakeResult& seen) {
+  const double noise = seen.rmse_estimate * seen.rmse_estimate - seen.reading_error * seen.reading_error;
+  const double allowed = squared_noise_for(target_rmse, seen.reading_error);
+  return noise > allowed ? kMargin * noise / allowed : 0.0;
+}
+
+/// One number of rays for all sites: more of them until a bake says that it is enough. What a few rays show of many is
+/// far too much where light is rough, as the noise of nets falls faster than that of independent rays.
+BakeResult bake_towards_target(const Volume& volume, const Scene& scene, const BakeSettings& settings,
+                               const FoundSites& found, const Stages& stages, const Run& run) {
+  constexpr double kMostRays = 0x1p20;
+  constexpr double kMostAStep = 4.0;
+  constexpr double kLeastAStep = 1.2;
   const Stopwatch watch;
-  BakeSettings pilot = settings;
-  pilot.target_rmse = pilot.target_seconds = 0.0;
-  pilot.wants_error_grid = false;
-  pilot.trace.rays = 16;
-  const BakeResult seen = bake_side(volume, scene, pilot, found, stages, run);
-  double factor = std::numeric_limits<double>::infinity();
-  if (settings.target_rmse > 0.0) factor = kMargin * std::pow(seen.rmse_estimate / settings.target_rmse, 2.0);
-  if (settings.target_seconds > 0.0)
-    factor = std::min(factor, (settings.target_seconds - watch.seconds()) / watch.seconds());
-  settings.target_rmse = settings.target_seconds = 0.0;
-  settings.trace.rays = int(std::clamp(std::ceil(pilot.trace.rays * factor), double(pilot.trace.rays), 0x1p20));
-  seconds = watch.seconds();
-  return settings;
+  BakeSettings step = settings;
+  step.target_rmse = step.target_seconds = 0.0;
+  step.trace.rays = kFirstRays;
+  for (;;) {
+    const double before = watch.seconds();
+    BakeResult result = bake_side(volume, scene, step, found, stages, run);
+    result.seconds["pilot"] = before;
+    const double rays = step.trace.rays;
+    double factor = std::numeric_limits<double>::infinity();
+    if (settings.target_rmse > 0.0) {
+      const double wanted = more_rays_for(settings.target_rmse, result);
+      if (wanted == 0.0 || wants_paths(settings, result)) return result;
+      factor = std::clamp(wanted, kLeastAStep, kMostAStep);
+    }
+    if (settings.target_seconds > 0.0)
+      factor = std::min(factor, (settings.target_seconds - watch.seconds()) / (watch.seconds() - before));
+    if (factor < kLeastAStep || rays >= kMostRays) return result;
+    step.trace.rays = int(std::min(std::ceil(rays * factor), kMostRays));
+  }
 }
 
 /// After `seconds` that found reading reflections from texels as wrong as the light may be.
@@ -130,13 +147,9 @@ BakeResult bake_side(const Volume& volume, const Scene& scene, const BakeSetting
     found.sites = {};
     return bake_in_parts(volume, scene, settings, std::move(found.begun), stages, run);
   }
-  double pilot_seconds = 0.0;
-  const BakeSettings chosen = with_rays_for_target(volume, scene, settings, found, stages, run, pilot_seconds);
-  BakeResult result = bake_side(volume, scene, chosen, std::move(found), stages, run);
-  if (wants_paths(settings, result))
-    return bake_by_paths_instead(volume, scene, settings, watch.seconds(), stages, run);
-  result.seconds["pilot"] = pilot_seconds;
-  return result;
+  BakeResult result = bake_towards_target(volume, scene, settings, found, stages, run);
+  if (!wants_paths(settings, result)) return result;
+  return bake_by_paths_instead(volume, scene, settings, watch.seconds(), stages, run);
 }
 
 /// Both sides, one after the other: no ray goes from one to the other. A time is shared.
