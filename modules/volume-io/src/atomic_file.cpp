@@ -9,19 +9,24 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <vector>
 
 namespace isolux {
 namespace {
 namespace fs = std::filesystem;
 
 constexpr std::size_t kLongestEnd = 100;
+constexpr int kMostLinks = 40;  // as many as Linux follows
 
-// The file that `path` names once symbolic links are followed, so that a link stays one.
-fs::path real_target(const std::string& path) {
-  std::error_code error;
-  if (!fs::is_symlink(path, error)) return path;
-  const fs::path target = fs::weakly_canonical(path, error);
-  return error ? fs::path(path) : target;
+// The temporary files that there are. Whoever holds the mutex keeps others from coming and going.
+struct Begun {
+  std::mutex mutex;
+  std::vector<fs::path> paths;
+};
+
+Begun& begun() {
+  static auto& all = *new Begun;  // never destroyed: threads may still write while the program ends
+  return all;
 }
 
 // A file beside `target` that nobody else has, removed unless renamed. Its mode follows the umask.
@@ -40,11 +45,13 @@ class Temporary {
     // The name's end stays last: libraries choose the format by it.
     std::string end = target.filename().string();
     if (end.size() > kLongestEnd) end.erase(0, end.size() - kLongestEnd);
+    const std::lock_guard lock(begun().mutex);
     for (int attempt = 0; attempt < 100; ++attempt) {
       path_ = folder / fmt::format(".isolux-{}-{}-{}", getpid(), counter++, end);
       const int file = open(path_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
       if (file >= 0) {
         close(file);
+        begun().paths.push_back(path_);
         return;
       }
       if (errno != EEXIST) break;
@@ -54,16 +61,21 @@ class Temporary {
   Temporary(const Temporary&) = delete;
   Temporary& operator=(const Temporary&) = delete;
   ~Temporary() {
+    if (path_.empty()) return;
+    const std::lock_guard lock(begun().mutex);
     std::error_code ignored;
-    if (!path_.empty()) fs::remove(path_, ignored);
+    fs::remove(path_, ignored);
+    std::erase(begun().paths, path_);
   }
 
   [[nodiscard]] const fs::path& path() const { return path_; }
 
   void rename_to_target() {
+    const std::lock_guard lock(begun().mutex);
     std::error_code error;
     fs::rename(path_, target_, error);
     if (error) throw IoError(fmt::format("{}: cannot be written: {}", target_.string(), error.message()));
+    std::erase(begun().paths, path_);
     path_.clear();
   }
 
@@ -96,8 +108,27 @@ std::string with_name(std::string message, const std::string& temporary, const s
 
 }  // namespace
 
+std::string written_file(const std::string& path) {
+  // Not canonical(): a link may lead to a file that is not there yet.
+  fs::path target = path;
+  std::error_code error;
+  for (int links = 0; fs::is_symlink(target, error); ++links) {
+    const fs::path next = fs::read_symlink(target, error);
+    if (error || links == kMostLinks) throw IoError(fmt::format("{}: a symbolic link that cannot be followed", path));
+    target = target.parent_path() / next;
+  }
+  return target.string();
+}
+
+std::unique_lock<std::mutex> remove_temporary_files() {
+  std::unique_lock lock(begun().mutex);
+  std::error_code ignored;
+  for (const fs::path& path : begun().paths) fs::remove(path, ignored);
+  return lock;
+}
+
 void require_writable(const std::string& path) {
-  const fs::path target = real_target(path);
+  const fs::path target = written_file(path);
   if (!is_special(target)) {
     Temporary removed(target);
   } else if (access(target.c_str(), W_OK) != 0) {
@@ -106,7 +137,7 @@ void require_writable(const std::string& path) {
 }
 
 void write_atomically(const std::string& path, const std::function<void(std::ostream&)>& write) {
-  const fs::path target = real_target(path);
+  const fs::path target = written_file(path);
   if (is_special(target)) return fill(target, path, write);
   Temporary temporary(target);
   fill(temporary.path(), path, write);
@@ -114,7 +145,7 @@ void write_atomically(const std::string& path, const std::function<void(std::ost
 }
 
 void write_atomically_by_name(const std::string& path, const std::function<void(const std::string& temporary)>& write) {
-  const fs::path target = real_target(path);
+  const fs::path target = written_file(path);
   if (is_special(target)) return write(target.string());
   Temporary temporary(target);
   const std::string name = temporary.path().string();

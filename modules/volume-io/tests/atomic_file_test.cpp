@@ -57,6 +57,39 @@ TEST(AtomicFile, FollowsTheUmaskAndSymbolicLinks) {
   EXPECT_EQ(test::read_file(folder.file("a")), "2");
 }
 
+TEST(AtomicFile, KeepsLinksThatLeadToNoFileYet) {
+  const test::TemporaryFolder folder;
+  std::filesystem::create_symlink("second", folder.file("first"));
+  std::filesystem::create_symlink(folder.file("new"), folder.file("second"));
+  EXPECT_EQ(std::filesystem::path(written_file(folder.file("first"))).filename(), "new");
+  write_atomically(folder.file("first"), [](std::ostream& out) { out << 1; });
+  EXPECT_TRUE(std::filesystem::is_symlink(folder.file("first")));
+  EXPECT_TRUE(std::filesystem::is_symlink(folder.file("second")));
+  EXPECT_EQ(test::read_file(folder.file("new")), "1");
+
+  std::filesystem::create_symlink("gone/a", folder.file("astray"));
+  EXPECT_THAT(test::error_of([&] { require_writable(folder.file("astray")); }), HasSubstr("there is no folder"));
+  std::filesystem::create_symlink("ring", folder.file("ring"));
+  EXPECT_NE(test::error_of([&] { require_writable(folder.file("ring")); }), "");
+}
+
+TEST(AtomicFile, LeavesNothingBehindForWhoEndsAtOnce) {
+  const test::TemporaryFolder folder;
+  const auto path = folder.write("out", "old");
+  EXPECT_NE(test::error_of([&] {
+              write_atomically(path, [&](std::ostream& out) {
+                out << "half";
+                EXPECT_EQ(folder.entries(), 2u);
+                const auto no_more = remove_temporary_files();
+                EXPECT_EQ(folder.entries(), 1u);
+                EXPECT_TRUE(no_more.owns_lock());
+              });
+            }),
+            "");
+  EXPECT_EQ(test::read_file(path), "old");
+  EXPECT_EQ(folder.entries(), 1u);
+}
+
 TEST(AtomicFile, NamesAMissingFolder) {
   const test::TemporaryFolder folder;
   const auto write = [](std::ostream& out) { out << 1; };

@@ -1,10 +1,15 @@
 #pragma once
 
 #include <functional>
+#include <mutex>
 #include <ostream>
 #include <string>
 
 namespace isolux {
+
+/// The file that writing to `path` replaces: symbolic links are followed, also to a file that is not there, and stay.
+/// \throw IoError for links in a circle
+[[nodiscard]] std::string written_file(const std::string& path);
 
 /// Finds out before long work whether `path` can be written as below; leaves nothing behind. \throw IoError naming path
 void require_writable(const std::string& path);
@@ -16,5 +21,9 @@ void write_atomically(const std::string& path, const std::function<void(std::ost
 /// The same for a library that wants a file name: `write` gets the temporary's path, which keeps the extension of
 /// `path`. An IoError of `write` that names the temporary names `path` instead.
 void write_atomically_by_name(const std::string& path, const std::function<void(const std::string& temporary)>& write);
+
+/// Removes the temporary files of this process, for a program that has to end at once. While the lock lives, none is
+/// made or renamed.
+[[nodiscard]] std::unique_lock<std::mutex> remove_temporary_files();
 
 }  // namespace isolux
