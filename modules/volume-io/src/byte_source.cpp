@@ -71,13 +71,18 @@ class GzipSource final : public ByteSource {
     stream_.avail_in = uInt(got);
     return got > 0;
   }
-  // A gzip file may be several members one after another; anything else behind a member is not ours.
+  // A gzip file may be several members one after another, and zeros that pad it to whole blocks.
   void next_member() {
     const bool more = stream_.avail_in > 0 || refill();
     if (more && *stream_.next_in == 0x1F) {
       inflateReset(&stream_);
-    } else {
-      ended_ = true;
+      return;
+    }
+    ended_ = true;
+    while (stream_.avail_in > 0 || refill()) {
+      if (std::any_of(stream_.next_in, stream_.next_in + stream_.avail_in, [](Bytef byte) { return byte != 0; }))
+        throw IoError(fmt::format("{}: there is more behind the compressed data", path_));
+      stream_.avail_in = 0;
     }
   }
 

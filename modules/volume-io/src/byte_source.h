@@ -20,8 +20,8 @@ class ByteSource {
 /// The bytes of a file from `offset` on. \throw IoError
 [[nodiscard]] std::unique_ptr<ByteSource> file_source(const std::string& path, std::uint64_t offset);
 
-/// What the gzip or zlib stream at `offset` inflates to, all members of it; bytes after the last member are ignored as
-/// gzip does. \throw IoError, also from read() for damaged data.
+/// What the gzip or zlib stream at `offset` inflates to, all members of it; zeros after the last member are ignored as
+/// gzip does. \throw IoError, also from read() for damaged data and for anything else behind them.
 [[nodiscard]] std::unique_ptr<ByteSource> gzip_source(const std::string& path, std::uint64_t offset);
 
 /// Reads and drops bytes. \throw IoError naming `path` if there are fewer.
