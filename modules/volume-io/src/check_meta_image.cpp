@@ -123,7 +123,24 @@ void check_geometry(const std::string& path, const MetaFields& fields) {
   }
 }
 
+bool is_local(const MetaFields& fields) {
+  const std::string named = fields.text("ElementDataFile");
+  return named == "LOCAL" || named == "Local" || named == "local";
+}
+
+std::string data_file(const std::string& path, const MetaFields& fields, const ReadOptions& options) {
+  if (is_local(fields)) return path;
+  const std::string named = fields.text("ElementDataFile");
+  if (named.empty() || named.starts_with("LIST") || named.find('%') != std::string::npos)
+    fields.refuse("ElementDataFile", "supported are LOCAL and the name of one file");
+  return resolve_data_file(path, named, options.allow_external_data);
+}
+
 }  // namespace
+
+std::string meta_image_data_file(const std::string& path, const ReadOptions& options) {
+  return data_file(path, MetaFields(path, read_meta_text(path)), options);
+}
 
 bool is_meta_image(const std::string& path) {
   const std::string bytes = first_bytes(path, 4096);
@@ -147,11 +164,8 @@ CheckedHeader check_meta_image(const std::string& path, const ReadOptions& optio
   if (!skips.empty() && (skips[0] < -1.0 || skips[0] > 1e15 || std::floor(skips[0]) != skips[0]))
     fields.refuse("HeaderSize", "a whole number of at least -1 is needed");
 
-  const std::string named = fields.text("ElementDataFile");
-  const bool local = named == "LOCAL" || named == "Local" || named == "local";
-  if (!local && (named.empty() || named.starts_with("LIST") || named.find('%') != std::string::npos))
-    fields.refuse("ElementDataFile", "supported are LOCAL and the name of one file");
-  const std::string data = local ? path : resolve_data_file(path, named, options.allow_external_data);
+  const bool local = is_local(fields);
+  const std::string data = data_file(path, fields, options);
   const std::uint64_t data_size = require_file(data);
   const std::uint64_t begin = (local ? header_end : 0) + std::uint64_t(skips.empty() ? 0.0 : std::max(skips[0], 0.0));
   if (begin > data_size)

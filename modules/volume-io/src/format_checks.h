@@ -25,6 +25,8 @@ struct CheckedHeader {
 
 [[nodiscard]] bool is_meta_image(const std::string& path);
 [[nodiscard]] CheckedHeader check_meta_image(const std::string& path, const ReadOptions& options);
+/// The file that holds the data: `path` itself where they are attached. \throw as check_meta_image
+[[nodiscard]] std::string meta_image_data_file(const std::string& path, const ReadOptions& options);
 
 [[nodiscard]] bool is_legacy_vtk(const std::string& path);
 [[nodiscard]] CheckedHeader check_legacy_vtk(const std::string& path);

@@ -202,8 +202,7 @@ class Interpreter {
       return;
     }
     if (named->empty()) refuse("data file", "a file's name is needed");
-    const bool numbered = named->find('%') != std::string::npos && nrrd_words(*named).size() >= 4;
-    if (numbered || nrrd_words(*named).front() == "LIST")
+    if (names_several_files(*named))
       refuse("data file", "data spread over several files are not supported; join them first");
     header_.data_file = resolve_data_file(header_.path, *named, options.allow_external_data);
   }

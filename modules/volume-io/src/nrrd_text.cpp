@@ -160,6 +160,17 @@ std::vector<std::string> nrrd_words(std::string_view text) {
   return words;
 }
 
+bool names_several_files(std::string_view field) {
+  const auto words = nrrd_words(field);
+  if (words.empty()) return false;
+  return words.front() == "LIST" || (field.find('%') != std::string_view::npos && words.size() >= 4);
+}
+
+bool can_be_data_file(std::string_view name) {
+  const bool one_line = name.find_first_of("\n\r") == std::string_view::npos;
+  return one_line && !name.empty() && trimmed(name) == name && !names_several_files(name);
+}
+
 std::string escape_nrrd_value(std::string_view value) {
   std::string text;
   for (const char c : value) {

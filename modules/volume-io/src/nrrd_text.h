@@ -22,6 +22,12 @@ struct NrrdText {
 /// Words separated by blanks; a vector such as "(1, 0,0)" is one word.
 [[nodiscard]] std::vector<std::string> nrrd_words(std::string_view text);
 
+/// Whether a `data file` field names several files: a pattern with numbers, or LIST.
+[[nodiscard]] bool names_several_files(std::string_view field);
+
+/// Whether a `data file` field with this name is read back as it: in one line, without blanks around it.
+[[nodiscard]] bool can_be_data_file(std::string_view name);
+
 /// A key/value pair's value with newlines and backslashes escaped.
 [[nodiscard]] std::string escape_nrrd_value(std::string_view value);
 

@@ -14,9 +14,9 @@ constexpr std::string_view kFormats =
     "gen:NAME[:N], NRRD (.nrrd, .nhdr), NIfTI (.nii, .nii.gz), MetaImage (.mha, .mhd), MRC (.mrc, .map), legacy VTK "
     "(.vtk), TIFF stacks, folders of DICOM slices, and name_WxHxD_type.raw";
 
-StoredVolume read_in_form(const std::string& source, ReadOptions options, VoxelForm form, const Run& run,
-                          const Registry<VolumeReader>& registry) {
-  options.form = form;
+/// \throw InvalidInput, IoError if nobody claims the source
+std::unique_ptr<VolumeReader> reader_of(const std::string& source, const ReadOptions& options,
+                                        const Registry<VolumeReader>& registry) {
   for (const auto& [name, settings] : options.settings)
     if (!settings.empty()) static_cast<void>(registry.info(name));  // there is nobody else to say that it is not there
   std::unique_ptr<VolumeReader> best;
@@ -38,8 +38,15 @@ StoredVolume read_in_form(const std::string& source, ReadOptions options, VoxelF
     if (!detail::is_directory(source)) (void)detail::require_file(source);
     throw InvalidInput(fmt::format("{}: not a volume that can be read: known are {}{}", source, kFormats, missing));
   }
+  return best;
+}
+
+StoredVolume read_in_form(const std::string& source, ReadOptions options, VoxelForm form, const Run& run,
+                          const Registry<VolumeReader>& registry) {
+  options.form = form;
+  const auto reader = reader_of(source, options, registry);
   try {
-    return best->read(source, options, run);
+    return reader->read(source, options, run);
   } catch (const std::bad_alloc&) {
     throw IoError(fmt::format("{}: the memory does not suffice for so many voxels", source));
   } catch (const std::length_error&) {
@@ -65,6 +72,19 @@ StoredVolume read_stored_volume(const std::string& source, const ReadOptions& op
 
 StoredVolume read_stored_volume(const std::string& source, const ReadOptions& options, const Run& run) {
   return read_stored_volume(source, options, run, readers());
+}
+
+std::vector<std::string> volume_files(const std::string& source, const ReadOptions& options,
+                                      const Registry<VolumeReader>& registry) {
+  try {
+    return reader_of(source, options, registry)->files(source, options);
+  } catch (const Error&) {
+    return {source};
+  }
+}
+
+std::vector<std::string> volume_files(const std::string& source, const ReadOptions& options) {
+  return volume_files(source, options, readers());
 }
 
 }  // namespace isolux

@@ -1,4 +1,6 @@
 #include "files.h"
+#include "nrrd_header.h"
+#include "nrrd_text.h"
 #include "nrrd_write.h"
 #include "raw_name.h"
 #include "scalars.h"
@@ -12,6 +14,7 @@
 
 namespace isolux {
 namespace {
+namespace fs = std::filesystem;
 
 detail::NrrdImage nrrd_image(const VolumeView& volume, const WriteOptions& options) {
   return {.type = volume.stored_type(),
@@ -31,20 +34,43 @@ void write_attached(const VolumeView& volume, const std::string& path, const Wri
   });
 }
 
+/// Whether the NRRD at `header`, if there is one, has its data in `data`.
+bool has_data_in(const std::string& header, const fs::path& data) {
+  try {
+    std::error_code error;
+    return fs::equivalent(detail::read_nrrd_header(header, {}).data_file, data, error);
+  } catch (const Error&) {
+    return false;
+  }
+}
+
+/// Beside its header: nobody has named it, so that what is there already may be somebody's only copy.
+std::string data_file_of(const std::string& header, const WriteOptions& options) {
+  const fs::path data = fs::path(header).replace_extension(options.compress ? ".raw.gz" : ".raw");
+  if (!detail::can_be_data_file(data.filename().string()))
+    throw InvalidInput(fmt::format(
+        "{}: a header cannot name its data file '{}': allowed are names in one line without blanks around them", header,
+        data.filename().string()));
+  std::error_code error;
+  if (fs::exists(data, error) && !has_data_in(header, data))
+    throw IoError(fmt::format("{}: its data file {} is there already and belongs to no header of that name", header,
+                              data.string()));
+  return data.string();
+}
+
 void write_detached(const VolumeView& volume, const std::string& path, const WriteOptions& options) {
   auto image = nrrd_image(volume, options);
-  const std::filesystem::path data =
-      std::filesystem::path(path).replace_extension(options.compress ? ".raw.gz" : ".raw");
-  image.data_file = data.filename().string();
+  const std::string data = data_file_of(path, options);
+  image.data_file = fs::path(data).filename().string();
   // The data first: a header never points to nothing.
-  write_atomically(data.string(), [&](std::ostream& out) { detail::write_nrrd_values(out, image, volume.voxels()); });
+  write_atomically(data, [&](std::ostream& out) { detail::write_nrrd_values(out, image, volume.voxels()); });
   write_atomically(path, [&](std::ostream& out) { detail::write_nrrd_header(out, image); });
 }
 
 void write_headerless(const VolumeView& volume, const std::string& path) {
   const auto layout = detail::parse_raw_name(path);
   if (!layout || layout->size != volume.lattice().size) {
-    const auto stem = std::filesystem::path(path).stem().string();
+    const auto stem = fs::path(path).stem().string();
     const RawLayout own{.size = volume.lattice().size, .type = volume.stored_type(), .big_endian = false};
     throw InvalidInput(fmt::format("{}: a headerless file must say its size and type in its name: {}{}", path, stem,
                                    detail::raw_name_end(own)));
@@ -58,11 +84,17 @@ void write_headerless(const VolumeView& volume, const std::string& path) {
 
 }  // namespace
 
+std::vector<std::string> files_written(const std::string& path, const WriteOptions& options) {
+  if (detail::has_extension(path, ".nhdr")) return {path, data_file_of(path, options)};
+  if (detail::has_extension(path, ".nrrd") || detail::has_extension(path, ".raw")) return {path};
+  throw InvalidInput(fmt::format("{}: volumes can be written as .nrrd, .nhdr and name_WxHxD_type.raw", path));
+}
+
 void write_volume(const VolumeView& volume, const std::string& path, const WriteOptions& options) {
+  static_cast<void>(files_written(path, options));
   if (detail::has_extension(path, ".nrrd")) return write_attached(volume, path, options);
   if (detail::has_extension(path, ".nhdr")) return write_detached(volume, path, options);
-  if (detail::has_extension(path, ".raw")) return write_headerless(volume, path);
-  throw InvalidInput(fmt::format("{}: volumes can be written as .nrrd, .nhdr and name_WxHxD_type.raw", path));
+  write_headerless(volume, path);
 }
 
 }  // namespace isolux

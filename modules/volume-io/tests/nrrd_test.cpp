@@ -81,8 +81,9 @@ Volume example(ScalarType type) {
 TEST(Nrrd, RoundTripsEveryTypeAttachedDetachedRawAndGzip) {
   const test::TemporaryFolder folder;
   for (int type = 0; type < 10; ++type) {
-    for (const auto* name : {"a.nrrd", "b.nhdr"}) {
+    for (const std::string ending : {".nrrd", ".nhdr"}) {
       for (const bool compress : {false, true}) {
+        const auto name = (compress ? "packed" : "plain") + ending;
         const Volume volume = example(ScalarType(type));
         write_volume(volume, folder.file(name), {.compress = compress});
         const Volume back = read_volume(folder.file(name));
@@ -94,8 +95,8 @@ TEST(Nrrd, RoundTripsEveryTypeAttachedDetachedRawAndGzip) {
       }
     }
   }
-  // a.nrrd, b.nhdr, b.raw and b.raw.gz: no temporary is left.
-  EXPECT_EQ(folder.entries(), 4u);
+  // Two of .nrrd and .nhdr each, .raw and .raw.gz: no temporary is left.
+  EXPECT_EQ(folder.entries(), 6u);
 }
 
 TEST(Nrrd, WritesTheSameBytesEachTime) {

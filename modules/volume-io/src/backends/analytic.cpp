@@ -42,6 +42,11 @@ class AnalyticReader final : public VolumeReader {
     return detail::make_volume(volume.name, volume.lattice(), std::vector<float>(values.begin(), values.end()),
                                volume.stored_type, volume.space, options);
   }
+
+  [[nodiscard]] std::vector<std::string> files(const std::string& /*source*/,
+                                               const ReadOptions& /*options*/) const override {
+    return {};
+  }
 };
 
 }  // namespace

@@ -160,6 +160,15 @@ class ItkReader final : public VolumeReader {
                                std::string(what.space), options);
   }
 
+  [[nodiscard]] std::vector<std::string> files(const std::string& source, const ReadOptions& options) const override {
+    if (detail::is_directory(source)) {
+      auto slices = detail::files_in_folder(source, detail::is_dicom);
+      return slices.empty() ? detail::files_in_folder(source, detail::is_tiff) : slices;
+    }
+    if (detail::is_meta_image(source)) return {source, detail::meta_image_data_file(source, options)};
+    return {source};
+  }
+
  private:
   Options options_;
 };

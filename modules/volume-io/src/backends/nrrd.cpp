@@ -55,6 +55,10 @@ class NrrdReader final : public VolumeReader {
     return detail::make_volume(source, frame.lattice, detail::read_nrrd_values(header, options.form, run),
                                header.layout.type, std::move(frame.space), options);
   }
+
+  [[nodiscard]] std::vector<std::string> files(const std::string& source, const ReadOptions& options) const override {
+    return {source, detail::read_nrrd_header(source, options).data_file};
+  }
 };
 
 }  // namespace

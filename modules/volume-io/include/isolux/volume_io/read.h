@@ -2,6 +2,9 @@
 
 #include <isolux/volume_io/volume_reader.h>
 
+#include <string>
+#include <vector>
+
 namespace isolux {
 
 /// Reads a volume argument in floats: `gen:NAME[:N]`, a file told by content and then by extension, or a folder of
@@ -19,6 +22,12 @@ namespace isolux {
                                               const Registry<VolumeReader>& registry);
 [[nodiscard]] StoredVolume read_stored_volume(const std::string& source, const ReadOptions& options = {},
                                               const Run& run = {});
+
+/// The files that reading a source takes, data files of headers and a folder's slices among them, in the order of
+/// VolumeReader::files(): what a program must not replace. Of what cannot be read, `source` alone.
+[[nodiscard]] std::vector<std::string> volume_files(const std::string& source, const ReadOptions& options,
+                                                    const Registry<VolumeReader>& registry);
+[[nodiscard]] std::vector<std::string> volume_files(const std::string& source, const ReadOptions& options = {});
 
 /// SHA-256 over size, frame and values as floats (little endian), the same whichever type they are held in: what ties a
 /// light file to its volume, in lower-case hexadecimal.

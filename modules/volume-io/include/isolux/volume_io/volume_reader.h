@@ -9,6 +9,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace isolux {
 
@@ -49,6 +50,12 @@ class VolumeReader {
   /// header that makes no sense or asks for what is not supported. Every message names the file.
   [[nodiscard]] virtual StoredVolume read(const std::string& source, const ReadOptions& options,
                                           const Run& run) const = 0;
+  /// The files that read() takes, the header's own first: `source` alone, if a reader does not say otherwise. \throw as
+  /// read(), of the header
+  [[nodiscard]] virtual std::vector<std::string> files(const std::string& source,
+                                                       const ReadOptions& /*options*/) const {
+    return {source};
+  }
 };
 
 /// raw, nrrd, analytic, and itk where it was built.

@@ -3,6 +3,7 @@
 #include <isolux/core/volume.h>
 
 #include <string>
+#include <vector>
 
 namespace isolux {
 
@@ -10,9 +11,13 @@ struct WriteOptions {
   bool compress = false;  ///< gzip, where the format has it
 };
 
+/// The files that write_volume() writes: `path`, and behind it the data file of a detached header. \throw InvalidInput
+/// naming the writable extensions, or for a name that no header can give its data file; IoError if such a data file is
+/// there already and is not that of the header at `path`
+[[nodiscard]] std::vector<std::string> files_written(const std::string& path, const WriteOptions& options = {});
+
 /// Writes a volume in the format of its extension (.nrrd, .nhdr, .raw as name_WxHxD_type.raw, and what the itk backend
-/// adds), in its stored type. Written beside the target and renamed. \throw InvalidInput naming the writable
-/// extensions; IoError.
+/// adds), in its stored type. Written beside the target and renamed. \throw as files_written(), IoError.
 void write_volume(const VolumeView& volume, const std::string& path, const WriteOptions& options = {});
 
 }  // namespace isolux
