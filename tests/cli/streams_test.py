@@ -41,7 +41,7 @@ class FullDisk(CommandLineTest):
             with open("/dev/full", "w") as full:
                 done = subprocess.run([ISOLUX, *command], stdout=full, stderr=subprocess.PIPE, text=True)
             self.assertEqual(done.returncode, 1, command)
-            self.assertRegex(done.stderr, r"^isolux: error: [\w ]+: standard output: [^\n]+\n$")
+            self.assertRegex(done.stderr, r"^isolux: error: [\w ]+: standard output: writing failed: No space left on device\n$")
 
 
 class StandardStreams(CommandLineTest):
@@ -94,7 +94,7 @@ class Signals(CommandLineTest):
         if self.isolux("bench", "--help").returncode == 0:  # a build may leave it out
             commands.append(("bench", "trace", "-o", "results"))
         for command in commands:
-            for number in (signal.SIGINT, signal.SIGTERM):
+            for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
                 with self.subTest(command=command[0], signal=number):
                     process = subprocess.Popen([ISOLUX, *command], cwd=self.folder, stderr=subprocess.PIPE, text=True)
                     time.sleep(1.0)
@@ -103,6 +103,30 @@ class Signals(CommandLineTest):
                     self.assertEqual(process.returncode, 130, errors)
                     self.assertIn(f"isolux: error: {command[0]}: interrupted", errors)
                     self.assertEqual(os.listdir(self.folder), [])
+
+    def start(self, *command, **how):
+        process = subprocess.Popen([ISOLUX, *command], cwd=self.folder, stderr=subprocess.PIPE, text=True, **how)
+        time.sleep(0.5)
+        return process
+
+    def test_that_come_twice_leave_one_line_and_no_file(self):
+        for numbers in ((signal.SIGINT, signal.SIGTERM), (signal.SIGTERM, signal.SIGHUP), (signal.SIGTERM, signal.SIGTERM)):
+            with self.subTest(signals=numbers):
+                process = self.start("bake", "gen:gyroid:64", "-o", "light.nrrd", "--rays", "4096")
+                for number in numbers:  # as timeout does, to the program and to its group
+                    process.send_signal(number)
+                _, errors = process.communicate(timeout=60)
+                self.assertEqual(process.returncode, 130, errors)
+                self.assertRegex(errors, r"^isolux: error: (bake|signal): interrupted[^\n]*\n$")
+                self.assertEqual(os.listdir(self.folder), [])
+
+    def test_of_a_hang_up_are_ignored_under_nohup(self):
+        ignore = lambda: signal.signal(signal.SIGHUP, signal.SIG_IGN)
+        process = self.start("bake", "gen:gyroid:32", "-o", "light.nrrd", "--rays", "256", preexec_fn=ignore)
+        process.send_signal(signal.SIGHUP)
+        _, errors = process.communicate(timeout=120)
+        self.assertEqual(process.returncode, 0, errors)
+        self.assertEqual(os.listdir(self.folder), ["light.nrrd"])
 
 
 if __name__ == "__main__":

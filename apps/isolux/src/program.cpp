@@ -1,11 +1,14 @@
 #include "program.h"
 
 #include <isolux/core/error.h>
+#include <isolux/volume_io/atomic_file.h>
+#include <unistd.h>
 
+#include <atomic>
 #include <csignal>
 #include <exception>
-#include <iostream>
 #include <new>
+#include <sstream>
 #include <stdexcept>
 
 #include "session.h"
@@ -18,7 +21,12 @@ namespace isolux {
 int run_program(std::string what, const std::function<int(Session& session, std::string& what)>& work) {
   open_standard_streams();
   std::signal(SIGXFSZ, SIG_IGN);
-  const SignalWatcher signals;
+  std::atomic_flag told{};  // one line says that the program was interrupted, whoever is first
+  const SignalWatcher signals([&told] {
+    const auto no_more = remove_temporary_files();
+    if (!told.test_and_set()) complain("signal", "interrupted a second time and ended at once");
+    _exit(kInterrupted);
+  });
   const auto fail = [&what](const std::string& why, ExitStatus status) -> int {
     complain(what, why);
     return status;
@@ -32,7 +40,7 @@ int run_program(std::string what, const std::function<int(Session& session, std:
   } catch (const UsageError& error) {
     return fail(error.what(), kUsage);
   } catch (const Cancelled& error) {
-    return fail(error.what(), kInterrupted);
+    return told.test_and_set() ? kInterrupted : fail(error.what(), kInterrupted);
   } catch (const std::bad_alloc&) {
     return fail("not enough memory", kFailed);
   } catch (const std::length_error&) {
@@ -43,8 +51,9 @@ int run_program(std::string what, const std::function<int(Session& session, std:
 }
 
 int print_help(const CLI::App& program, const CLI::Success& help) {
-  const int status = program.exit(help);
-  std::cout.flush();
+  std::ostringstream text;
+  const int status = program.exit(help, text, text);
+  put_out(text.str());
   flush_output();
   return status;
 }

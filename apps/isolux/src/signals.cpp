@@ -1,22 +1,32 @@
 #include "signals.h"
 
 #include <pthread.h>
-#include <unistd.h>
 
 #include <csignal>
+#include <utility>
 
 namespace isolux {
+namespace {
 
-SignalWatcher::SignalWatcher() {
+/// A hang-up that is ignored already, as nohup wants it, stays so.
+bool hang_up_counts() {
+  struct sigaction before {};
+  return sigaction(SIGHUP, nullptr, &before) == 0 && before.sa_handler != SIG_IGN;
+}
+
+}  // namespace
+
+SignalWatcher::SignalWatcher(std::function<void()> end_at_once) {
   sigset_t signals;
   sigemptyset(&signals);
   sigaddset(&signals, SIGINT);
   sigaddset(&signals, SIGTERM);
+  if (hang_up_counts()) sigaddset(&signals, SIGHUP);
   pthread_sigmask(SIG_BLOCK, &signals, nullptr);
-  thread_ = std::jthread([this, signals](const std::stop_token& end) {
+  thread_ = std::jthread([this, signals, end_at_once = std::move(end_at_once)](const std::stop_token& end) {
     int signal = 0;
     while (sigwait(&signals, &signal) == 0 && !end.stop_requested()) {
-      if (stop_.stop_requested()) _exit(130);
+      if (stop_.stop_requested()) end_at_once();
       stop_.request_stop();
     }
   });

@@ -1,15 +1,16 @@
 #pragma once
 
+#include <functional>
 #include <stop_token>
 #include <thread>
 
 namespace isolux {
 
-/// Turns the first SIGINT or SIGTERM into a stop request, so that work ends cleanly, and the second into an immediate
-/// exit with 130. Made before any other thread.
+/// Turns the first SIGINT, SIGTERM or SIGHUP into a stop request, so that work ends cleanly. At the second one it calls
+/// `end_at_once`, from a thread of its own. Made before any other thread.
 class SignalWatcher {
  public:
-  SignalWatcher();
+  explicit SignalWatcher(std::function<void()> end_at_once);
   ~SignalWatcher();
   SignalWatcher(const SignalWatcher&) = delete;
   SignalWatcher& operator=(const SignalWatcher&) = delete;

@@ -10,6 +10,11 @@
 namespace isolux {
 namespace {
 constexpr std::size_t kLongestMessage = 1000;
+
+/// \throw IoError with what errno says
+[[noreturn]] void refuse_output() {
+  throw IoError(fmt::format("standard output: writing failed: {}", reason_of(errno)));
+}
 }  // namespace
 
 void open_standard_streams() {
@@ -34,12 +39,14 @@ void complain(const std::string& what, std::string why) {
   tell(fmt::format("isolux: error: {}: {}\n", what, why));
 }
 
-void put_out(const std::string& text) { std::fwrite(text.data(), 1, text.size(), stdout); }
+void put_out(const std::string& text) {
+  errno = 0;
+  if (std::fwrite(text.data(), 1, text.size(), stdout) != text.size()) refuse_output();
+}
 
 void flush_output() {
   errno = 0;
-  if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0)
-    throw IoError(fmt::format("standard output: writing failed: {}", reason_of(errno)));
+  if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) refuse_output();
 }
 
 }  // namespace isolux

@@ -14,7 +14,8 @@ void tell(const std::string& text);
 /// One line on stderr, `isolux: error: WHAT: WHY`; control characters, such as a broken file's, become blanks.
 void complain(const std::string& what, std::string why);
 
-/// Text for programs, on standard output; flush_output() says whether it got there.
+/// Text for programs, on standard output; flush_output() says whether it got there. \throw IoError if it is known
+/// already
 void put_out(const std::string& text);
 
 /// \throw IoError if what was printed has not all reached standard output.
