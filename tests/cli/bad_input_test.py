@@ -238,6 +238,15 @@ class BadLight(CommandLineTest):
             self.write("points.csv", line + "\n")
             self.fail(1, "probe", "gen:sphere:8", "--light", "light.nrrd", "--points", "points.csv", "-o", "o.csv",
                       says=("points.csv", "line 1", line))
+        for table in ("", "# mine\n", "easting northing height\n"):
+            self.write("points.csv", table)
+            self.fail(1, "probe", "gen:sphere:8", "--light", "light.nrrd", "--points", "points.csv", "-o", "o.csv",
+                      says=("points.csv", "no points", "x,y,z"))
+        self.write("points.csv", "id,z,y,x\n")  # a table that happens to be empty
+        self.succeed("probe", "gen:sphere:8", "--light", "light.nrrd", "--points", "points.csv", "-o", "empty.csv")
+        self.assertEqual(self.read("empty.csv"), b"x,y,z,isovalue,e\n")
+        self.fail(1, "probe", "gen:sphere:8", "--light", "light.nrrd", "--points", "gone.csv", "-o", "o.csv",
+                  says="gone.csv: cannot open the points: No such file or directory")
 
 
 if __name__ == "__main__":

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <cerrno>
 #include <fstream>
 #include <optional>
 #include <sstream>
@@ -59,15 +60,18 @@ bool begins_like_a_number(const std::string& field) {
   return !field.empty() && std::string_view("0123456789+-.").find(field[0]) != std::string_view::npos;
 }
 
-/// Where the names say that x, y and z are, if this line is names.
+bool are_names(const std::vector<std::string>& fields) {
+  return std::none_of(fields.begin(), fields.end(), begins_like_a_number);
+}
+
+/// Where names say that x, y and z are, if they do.
 std::optional<Columns> named_columns(const std::vector<std::string>& fields) {
-  if (std::any_of(fields.begin(), fields.end(), begins_like_a_number)) return std::nullopt;
   Columns columns{};
   for (std::size_t a = 0; a < 3; ++a) {
     const auto at = std::find_if(fields.begin(), fields.end(), [a](const std::string& field) {
       return field.size() == 1 && std::tolower(static_cast<unsigned char>(field[0])) == "xyz"[a];
     });
-    if (at == fields.end()) return Columns{0, 1, 2};
+    if (at == fields.end()) return std::nullopt;
     columns[a] = std::size_t(at - fields.begin());
   }
   return columns;
@@ -87,10 +91,12 @@ std::optional<Vec3> point_of(const std::vector<std::string>& fields, const Colum
 }  // namespace
 
 std::vector<Vec3> read_point_table(const std::string& path) {
+  errno = 0;
   std::ifstream file(path);
-  if (!file) throw IoError(fmt::format("{}: cannot open the points", path));
+  if (!file) throw IoError(fmt::format("{}: cannot open the points: {}", path, reason_of(errno)));
   std::vector<Vec3> points;
   std::optional<Columns> columns;  // known from the first line that holds anything
+  bool is_table = false;           // that line gives points or says where they are
   std::string line;
   for (std::size_t number_of_line = 1; std::getline(file, line); ++number_of_line) {
     if (number_of_line == 1 && line.starts_with(kByteOrderMark)) line.erase(0, kByteOrderMark.size());
@@ -98,9 +104,10 @@ std::vector<Vec3> read_point_table(const std::string& path) {
     if (line.empty() || line[0] == '#') continue;
     const auto fields = fields_of(line);
     if (!columns) {
-      columns = named_columns(fields);
-      if (columns) continue;
-      columns = Columns{0, 1, 2};
+      const auto named = are_names(fields) ? named_columns(fields) : std::nullopt;
+      columns = named.value_or(Columns{0, 1, 2});
+      is_table = named.has_value();
+      if (are_names(fields)) continue;
     }
     const auto point = point_of(fields, *columns);
     if (!point) {
@@ -110,6 +117,8 @@ std::vector<Vec3> read_point_table(const std::string& path) {
     points.push_back(*point);
   }
   if (file.bad()) throw IoError(fmt::format("{}: cannot read the points: is it a file?", path));
+  if (points.empty() && !is_table)
+    throw InvalidInput(fmt::format("{}: no points: allowed are lines of three numbers x,y,z", path));
   return points;
 }
 
