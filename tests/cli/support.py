@@ -5,6 +5,7 @@ import struct
 import subprocess
 import tempfile
 import unittest
+import zlib
 
 ISOLUX = os.environ["ISOLUX_BIN"]
 
@@ -91,3 +92,38 @@ def ply(path):
     points = [struct.unpack_from(layout, data, i * size) for i in range(vertices)]
     triangles = [struct.unpack_from("<B3i", data, vertices * size + i * 13)[1:] for i in range(faces)]
     return lines, points, triangles
+
+
+def png(path):
+    """Rows of (red, green, blue) bytes of a PNG of 8-bit RGB."""
+    with open(path, "rb") as file:
+        content = file.read()
+    width, height, depth, kind = struct.unpack(">2I2B", content[16:26])
+    assert (depth, kind) == (8, 2), "8-bit RGB is wanted"
+    packed = b""
+    at = 8
+    while at < len(content):
+        size, name = struct.unpack_from(">I4s", content, at)
+        if name == b"IDAT":
+            packed += content[at + 8:at + 8 + size]
+        at += 12 + size
+    data = zlib.decompress(packed)
+    rows = []
+    above = bytearray(3 * width)
+    for y in range(height):
+        start = y * (3 * width + 1)
+        row = bytearray(data[start + 1:start + 1 + 3 * width])
+        unfilter(data[start], row, above)
+        rows.append([tuple(row[x:x + 3]) for x in range(0, 3 * width, 3)])
+        above = row
+    return rows
+
+
+def unfilter(kind, row, above):
+    """Undoes a PNG row's filter: the bytes are differences from what is left (a), above (b) and left above (c)."""
+    for i, value in enumerate(row):
+        a = row[i - 3] if i >= 3 else 0
+        b = above[i]
+        c = above[i - 3] if i >= 3 else 0
+        nearest = min((abs(b - c), 0, a), (abs(a - c), 1, b), (abs(a + b - 2 * c), 2, c))[2]  # Paeth's
+        row[i] = (value + (0, a, b, (a + b) // 2, nearest)[kind]) % 256

@@ -52,7 +52,11 @@ class NearestSample : public isolux::Resampler {
 
 }  // namespace
 
-int main(int /*argc*/, char** argv) {
+int main(int argc, char** argv) {
+  if (argc != 2) {
+    std::fputs("usage: consumer VOLUME\n", stderr);
+    return 2;
+  }
   if (isolux::read_volume(argv[1]).lattice().count() < 8) return 1;
   const isolux::Volume volume = isolux::read_volume("gen:sphere:8");
   isolux::Stages stages = isolux::builtin_stages();

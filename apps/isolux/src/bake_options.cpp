@@ -4,6 +4,7 @@
 #include <isolux/bake/scene_file.h>
 
 #include "parse.h"
+#include "scene_files.h"
 #include "usage.h"
 
 namespace isolux {
@@ -14,7 +15,8 @@ const std::vector<std::pair<std::string, int>> kQualities{{"draft", 16}, {"good"
 
 }  // namespace
 
-void TraceOptions::add_to(CLI::App& command) {
+void TraceOptions::add_to(CLI::App& command, Session& session) {
+  session.reads({.name = "--scene", .paths = [this] { return scene_files(scene_); }});
   command
       .add_option("--scene", scene_,
                   "environment, lights, albedo and emission (default: uniform white sky, albedo 0.8)")
@@ -23,7 +25,7 @@ void TraceOptions::add_to(CLI::App& command) {
   command.add_option("--quality", quality_, "draft, good (default) or reference: 16, 64 or 1024 rays a site")
       ->check(CLI::IsMember({"draft", "good", "reference"}));
   command.add_option("--rays", rays_, "rays a site; overrides --quality")
-      ->check(CLI::Range(1, 1 << 20))
+      ->transform(whole_number(1, 1 << 20))
       ->type_name("R");
   command.add_option("--tracer", tracer_, "tracer backend")->type_name("NAME");
 }

@@ -14,10 +14,9 @@ namespace isolux {
 /// --exact-light`.
 class TraceOptions {
  public:
-  void add_to(CLI::App& command);
+  void add_to(CLI::App& command, Session& session);
   /// \throw UsageError, IoError, InvalidInput
   [[nodiscard]] Scene scene() const;
-  [[nodiscard]] const std::string& scene_path() const { return scene_; }
   [[nodiscard]] bool scene_given() const { return !scene_.empty(); }
   [[nodiscard]] bool bounces_given() const { return !bounces_.empty(); }
   /// Whether --bounces, --quality, --rays or --tracer were given.

@@ -6,75 +6,18 @@
 #include <cmath>
 #include <memory>
 
-#include "bake_options.h"
+#include "bake_command.h"
 #include "commands.h"
-#include "parse.h"
 #include "usage.h"
 #include "volume_options.h"
 
 namespace isolux {
 namespace {
 
-constexpr const char* kChosen = "auto";
 /// What --texels auto lets the texels be wrong by: a little less than one a cell is on real volumes.
 constexpr double kTexelError = 0.05;
 /// How much larger than asked an error may be without a word.
 constexpr double kNear = 1.05;
-
-struct BakeOptions {
-  VolumeOptions volume;
-  TraceOptions trace;
-  std::string output;
-  std::string iso_range;
-  std::string texels;
-  std::string lattice = "cells";
-  std::string bounce_method;
-  std::string sites = "all";
-  double rmse = 0.0;
-  double time = 0.0;
-  std::string error_grid;
-  double texels_a_cell = 0.0;
-  std::size_t samples = 0;
-  std::string sampler;
-  std::string resampler;
-  std::vector<std::string> set;
-  bool compress = false;
-};
-
-BakeSettings bake_settings(const BakeOptions& options, const Stages& stages) {
-  BakeSettings settings;
-  settings.trace = options.trace.settings();
-  settings.sampler.name = options.sampler;
-  settings.tracer.name = options.trace.tracer();
-  settings.resampler.name = options.resampler;
-  settings.samples = options.samples;
-  if (!options.bounce_method.empty()) {
-    settings.bounce_method = options.bounce_method == "paths" ? BounceMethod::kPaths : BounceMethod::kIterated;
-  }
-  settings.lattice = options.lattice == "voxels" ? TexelLattice::kVoxels : TexelLattice::kCells;
-  if (!options.texels.empty() && options.texels != kChosen)
-    settings.texels = parse_size3("--texels", options.texels, "auto or NXxNYxNZ");
-  settings.texels_a_cell = options.texels_a_cell;
-  if (!options.iso_range.empty()) settings.isovalues = parse_range("--iso-range", options.iso_range);
-  const bool scattered = options.resampler == "fit" || options.samples > 0;
-  if (options.sites == "need" && !scattered && options.rmse <= 0.0)
-    throw UsageError("--sites need: allowed with --rmse alone, or with scattered sites (--resampler fit, --samples)");
-  if (!options.error_grid.empty() && settings.trace.rays < 2 && options.rmse <= 0.0 && options.time <= 0.0)
-    throw UsageError("--error-grid: one ray a site tells nothing about its error; allowed is --rays 2 and more");
-  settings.texel_sites = options.sites == "need" ? TexelSites::kNeeded : TexelSites::kAll;
-  settings.target_rmse = options.rmse;
-  settings.target_seconds = options.time;
-  settings.wants_error_grid = !options.error_grid.empty();
-  apply_settings("--set", options.set,
-                 {{"sampler", &settings.sampler.settings},
-                  {"tracer", &settings.tracer.settings},
-                  {"resampler", &settings.resampler.settings}});
-  settings = with_backends(std::move(settings), stages);
-  require_choice(stages.samplers, settings.sampler);
-  require_choice(stages.tracers, settings.tracer);
-  require_choice(stages.resamplers, settings.resampler);
-  return settings;
-}
 
 void report_bake(const BakeResult& result, Session& session) {
   const Lattice& texels = result.light.lattice;
@@ -146,11 +89,9 @@ void choose_size(const BakeOptions& options, const Volume& volume, const Scene& 
 
 void run_bake(const BakeOptions& options, Session& session) {
   BakeSettings settings = bake_settings(options, session.stages);
-  session.require_outputs({{"--output", options.output}, {"--error-grid", options.error_grid}},
-                          {{"VOLUME", options.volume.source()}, {"--scene", options.trace.scene_path()}});
   const Volume volume = options.volume.read(session);
   const Scene scene = session.timed("read", [&] { return options.trace.scene(); });
-  if (options.texels == kChosen) choose_size(options, volume, scene, settings, session);
+  if (options.chooses_texels()) choose_size(options, volume, scene, settings, session);
   BakeResult result = bake(volume, scene, settings, session.stages, session.run);
   for (const auto& [stage, seconds] : result.seconds) session.add_seconds(stage, seconds);
   const double trace_seconds = std::max(result.seconds["trace"], 1e-9);
@@ -180,9 +121,10 @@ void run_bake(const BakeOptions& options, Session& session) {
 void add_bake_command(CLI::App& program, Session& session) {
   CLI::App& command = *program.add_subcommand("bake", "Light all level sets of a volume at once");
   const auto options = std::make_shared<BakeOptions>();
-  options->volume.add_to(command);
-  command.add_option("-o,--output", options->output, "the light to write")->required()->type_name("LIGHT.nrrd");
-  options->trace.add_to(command);
+  options->volume.add_to(command, session);
+  session.writes(
+      command.add_option("-o,--output", options->output, "the light to write")->required()->type_name("LIGHT.nrrd"));
+  options->trace.add_to(command, session);
   command
       .add_option(
           "--iso-range", options->iso_range,
@@ -224,10 +166,11 @@ void add_bake_command(CLI::App& program, Session& session) {
   command.add_option("--time", options->time, "seconds to spend on rays and bounces; with --rmse: at most")
       ->check(above_zero())
       ->type_name("SECONDS");
-  command.add_option("--error-grid", options->error_grid, "write the estimated standard error at each texel")
-      ->type_name("FILE.nrrd");
+  session.writes(
+      command.add_option("--error-grid", options->error_grid, "write the estimated standard error at each texel")
+          ->type_name("FILE.nrrd"));
   command.add_option("--samples", options->samples, "number of scattered sites (default: one at each texel)")
-      ->check(CLI::Range(std::size_t(1), std::size_t(1) << 40))
+      ->transform(whole_number(1, std::uint64_t(1) << 40))
       ->type_name("N");
   command.add_option("--sampler", options->sampler, "sampler backend")->type_name("NAME");
   command.add_option("--resampler", options->resampler, "resampler backend")->type_name("NAME");

@@ -1,11 +1,33 @@
+#include <fmt/format.h>
+#include <isolux/volume_io/scalar_type.h>
 #include <isolux/volume_io/write.h>
 
+#include <algorithm>
 #include <memory>
+#include <string>
+#include <vector>
 
 #include "commands.h"
 #include "volume_options.h"
 
 namespace isolux {
+namespace {
+
+/// Volumes are kept in floats, which do not hold all numbers of the wider types.
+void warn_of_rounding(const StoredVolume& volume, const Session& session) {
+  constexpr float kAllWhole = 0x1p24f;  // every whole number up to it is a float
+  const std::string type(scalar_type_name(volume.stored_type));
+  if (volume.stored_type == ScalarType::kFloat64)
+    return session.warn(
+        fmt::format("{}: its values are {}; written are the nearest of float32, about 7 digits", volume.name, type));
+  if (volume.stored_type == ScalarType::kFloat32 || bytes_per_scalar(volume.stored_type) < sizeof(float)) return;
+  const ValueRange range = value_range(volume);
+  if (std::max(-range.low, range.high) >= kAllWhole)
+    session.warn(fmt::format("{}: its values are {}; of those beyond 2^24 the nearest of float32 are written",
+                             volume.name, type));
+}
+
+}  // namespace
 
 void add_convert_command(CLI::App& program, Session& session) {
   CLI::App& command = *program.add_subcommand("convert", "Between the volume formats that can be written");
@@ -15,14 +37,19 @@ void add_convert_command(CLI::App& program, Session& session) {
     WriteOptions write;
   };
   const auto options = std::make_shared<Options>();
-  options->volume.add_to(command);
+  options->volume.add_to(command, session);
   command.add_option("OUT", options->output, "the file to write; its extension names the format")->required();
+  // A volume may be written over itself: it has been read by then.
+  const auto files = [given = options.get()] {
+    return given->output.empty() ? std::vector<std::string>() : files_written(given->output, given->write);
+  };
+  session.writes({.name = "OUT", .paths = files, .in_place = InPlace::kAllowed});
   command.add_flag("--compress", options->write.compress, "gzip, where the format has it");
   session.add_common_options(command);
   command.callback([options, &session] {
     session.on_run([options, &session] {
-      session.require_outputs({{"OUT", options->output}});
       const StoredVolume volume = options->volume.read_as_is(session);
+      warn_of_rounding(volume, session);
       session.timed("write", [&] { write_volume(volume, options->output, options->write); });
     });
   });

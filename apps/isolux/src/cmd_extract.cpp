@@ -87,11 +87,12 @@ NormalKind normal_kind(const std::string& name) {
   return name == "accurate" ? NormalKind::kAccurate : NormalKind::kGradient;
 }
 
-/// What the mesh's normals point to and whose light it shows: the outer side of the light or the scene (`lit`), unless
-/// the user says otherwise.
+/// What the mesh's normals point to and whose light it shows: the outer side of the light or the scene (`lit`) or the
+/// one that the user calls so, or with --side inner the other.
 OuterSide facing(const ExtractOptions& options, OuterSide lit) {
-  if (options.outer.empty()) return options.side.or_outer() == LevelSetSide::kInner ? opposite(lit) : lit;
-  return options.outer == "higher" ? OuterSide::kHigher : OuterSide::kLower;
+  OuterSide outer = lit;
+  if (!options.outer.empty()) outer = options.outer == "higher" ? OuterSide::kHigher : OuterSide::kLower;
+  return options.side.or_outer() == LevelSetSide::kInner ? opposite(outer) : outer;
 }
 
 /// The scene given, else that of the light, where exact light is to agree with it.
@@ -140,6 +141,8 @@ void extract(const Subject& subject, const BackendChoice& choice, const ExtractO
   const Scene scene = scene_for(options, light);
   if (!options.exact_light && options.trace.says_how_to_trace())
     session.warn("--bounces, --quality, --rays and --tracer have no effect without --exact-light");
+  if (!options.exact_light && light && options.trace.scene_given())
+    session.warn("--scene has no effect with --light unless --exact-light is given");
 
   const OuterSide outer = facing(options, light ? light_outer(*light) : scene.outer);
   const auto extractor = session.stages.extractors.create(choice.name, choice.settings);
@@ -180,7 +183,6 @@ void run_extract(const ExtractOptions& options, Session& session) {
   const bool lit = options.light.given() || options.exact_light;
   if (options.side.given() && !lit)
     throw UsageError("--side: it chooses whose light; give --light LIGHT.nrrd or --exact-light");
-  session.require_outputs({{"--output", options.output}});
   if (lit) {
     const Volume volume = options.volume.read(session);
     extract({.volume = volume, .floats = &volume}, choice, options, session);
@@ -195,25 +197,26 @@ void run_extract(const ExtractOptions& options, Session& session) {
 void add_extract_command(CLI::App& program, Session& session) {
   CLI::App& command = *program.add_subcommand("extract", "One isosurface as a mesh, with its light as vertex colours");
   const auto options = std::make_shared<ExtractOptions>();
-  options->volume.add_to(command);
+  options->volume.add_to(command, session);
   add_isovalue(command, options->isovalue);
-  command.add_option("-o,--output", options->output, "the mesh to write: .ply, .glb, .obj, .off or .stl")
-      ->required()
-      ->type_name("MESH.ply");
-  options->light.add_to(command);
+  session.writes(
+      command.add_option("-o,--output", options->output, "the mesh to write: .ply, .glb, .obj, .off or .stl")
+          ->required()
+          ->type_name("MESH.ply"));
+  options->light.add_to(command, session);
   options->side.add_to(
       command, "whose light, and where the normals point: outer (default), or inner, which --light needs to have");
   command.add_flag(
       "--exact-light", options->exact_light,
       "trace the light at the vertices; with --light too, that light's scene is taken and half the rays do");
-  options->trace.add_to(command);
+  options->trace.add_to(command, session);
   command
       .add_option("--outer", options->outer,
                   "the side that is outside: lower or higher values (default: what the light or scene says)")
       ->check(CLI::IsMember({"lower", "higher"}));
   command.add_flag("--cap", options->cap, "close the surface where it meets the box");
   command.add_option("--min-component", options->min_component, "leave out connected parts of fewer triangles")
-      ->check(CLI::Range(std::size_t(0), std::size_t(1) << 32))
+      ->transform(whole_number(0, std::uint64_t(1) << 32))
       ->type_name("N");
   command
       .add_option(

@@ -108,7 +108,7 @@ void add_info_command(CLI::App& program, Session& session) {
     bool json = false;
   };
   const auto options = std::make_shared<Options>();
-  options->volume.add_to(command);
+  options->volume.add_to(command, session);
   command.add_flag("--json", options->json, "as JSON");
   session.add_common_options(command);
   command.callback([options, &session] {

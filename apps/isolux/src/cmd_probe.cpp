@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/common.hpp>
+#include <glm/geometric.hpp>
 #include <limits>
 #include <memory>
 #include <optional>
@@ -33,8 +34,11 @@ class Box {
  public:
   explicit Box(const Lattice& lattice) : lattice_(lattice) {
     // Half a voxel at most: where floats tell less apart, only points that are known better are taken.
-    const Vec3 of_mesh = glm::min(8.0 * vertex_resolution(lattice), 0.5);
+    const Vec3 resolution = vertex_resolution(lattice);
+    const Vec3 of_mesh = glm::min(8.0 * resolution, 0.5);
     slack_ = glm::max(1e-6 * Vec3(lattice.size - 1), of_mesh);
+    // Vertices of our meshes keep so far from grid points, so that no triangle is flat (docs/extraction.md).
+    margin_ = glm::max(glm::min(16.0 * resolution, 0.25), std::ldexp(1.0, -10));
   }
 
   /// The point in index space, moved by the slack at most into the box; nothing outside it.
@@ -48,16 +52,28 @@ class Box {
     return index;
   }
 
+  /// By how much the isovalue of a mesh's vertex may be off: for the rounding of its coordinates and of the voxels, and
+  /// for being kept away from grid points.
+  [[nodiscard]] double isovalue_slack(const TrilinearField& field, const Vec3& index, double largest_voxel) const {
+    constexpr double kUlps = 4.0;
+    const double of_voxels = kUlps * double(std::numeric_limits<float>::epsilon()) * largest_voxel;
+    return glm::dot(glm::abs(field.cell_gradient(index)), slack_ + margin_) + of_voxels;
+  }
+
  private:
   Lattice lattice_;
   Vec3 slack_;
+  Vec3 margin_;
 };
+
+/// Whether the level set of an isovalue that is known within `slack` was lit.
+bool may_be_lit(const LightDetail& detail, double isovalue, double slack) {
+  return !detail.isovalues ||
+         (isovalue + slack >= double(detail.isovalues->low) && isovalue - slack <= double(detail.isovalues->high));
+}
 
 void run_probe(const ProbeOptions& options, Session& session) {
   if (!options.light.given()) throw UsageError("--light is required: the light to read at the points");
-  session.require_outputs(
-      {{"--output", options.output}},
-      {{"VOLUME", options.volume.source()}, {"--light", options.light.path()}, {"--points", options.points}});
   const Volume volume = options.volume.read(session);
   const LightFile light = options.light.read(volume, session);
   const std::vector<Vec3> points = session.timed("read", [&] { return read_point_table(options.points); });
@@ -66,6 +82,8 @@ void run_probe(const ProbeOptions& options, Session& session) {
   const LightReader reader(volume, options.light.of_side(light, options.side.or_outer()), TexelStorage::kBricks,
                            session.run);
   const LightDetail& detail = light.grid.detail;
+  const ValueRange range = value_range(volume);
+  const double largest_voxel = double(std::max(-range.low, range.high));
   std::size_t outside = 0;
   std::size_t unlit = 0;
   session.timed("write", [&] {
@@ -76,7 +94,7 @@ void run_probe(const ProbeOptions& options, Session& session) {
         if (!index) ++outside;
         const double nan = std::numeric_limits<double>::quiet_NaN();
         const double isovalue = index ? field.value(*index) : nan;
-        unlit += std::size_t(index && !detail.covers(isovalue));
+        if (index && !may_be_lit(detail, isovalue, box.isovalue_slack(field, *index, largest_voxel))) ++unlit;
         const Vec3f e = index ? reader.at_index(*index) : Vec3f(float(nan));
         fmt::print(out, "{},{},{},{:.9g}", p.x, p.y, p.z, isovalue);
         for (int c = 0; c < light.grid.channels; ++c) fmt::print(out, ",{:.9g}", e[c]);
@@ -102,15 +120,17 @@ void run_probe(const ProbeOptions& options, Session& session) {
 void add_probe_command(CLI::App& program, Session& session) {
   CLI::App& command = *program.add_subcommand("probe", "The light at points: x,y,z (world) in; x,y,z,isovalue,e out");
   const auto options = std::make_shared<ProbeOptions>();
-  options->volume.add_to(command);
-  options->light.add_to(command);
+  options->volume.add_to(command, session);
+  options->light.add_to(command, session);
   options->side.add_to(command, "whose light: outer (default), or inner where the light has both");
-  command
-      .add_option("--points", options->points,
-                  "one point a line, in the columns x, y and z if a first line names them, else in the first three")
-      ->required()
-      ->type_name("IN.csv");
-  command.add_option("-o,--output", options->output, "the table to write")->required()->type_name("OUT.csv");
+  session.reads(
+      command
+          .add_option("--points", options->points,
+                      "one point a line, in the columns x, y and z if a first line names them, else in the first three")
+          ->required()
+          ->type_name("IN.csv"));
+  session.writes(
+      command.add_option("-o,--output", options->output, "the table to write")->required()->type_name("OUT.csv"));
   session.add_common_options(command);
   command.callback([options, &session] { session.on_run([options, &session] { run_probe(*options, session); }); });
 }

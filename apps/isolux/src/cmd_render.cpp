@@ -42,13 +42,15 @@ struct RenderOptions {
   std::string outer;
 };
 
-void expose(Image& image, double stops) {
-  const float factor = float(std::exp2(stops));
-  for (Vec3f& p : image.pixels) p *= factor;
+/// The surface brighter by so many stops; what is seen beside it stays.
+Shader exposed(Shader shader, double stops) {
+  return [shader = std::move(shader), factor = float(std::exp2(stops))](const SurfacePoint& point) {
+    return factor * shader(point);
+  };
 }
 
-/// Baked light as a shader. A light of both sides shows each where it is, whatever --outer says; one that has another
-/// side than --outer says is refused.
+/// Baked light as a shader. A light of both sides shows each where it is, whatever --outer says; one that does not have
+/// the side that is shown is refused.
 Shader baked_shader(const Volume& volume, const LightFile& light, const RenderOptions& options, OuterSide outer,
                     const Run& run) {
   const auto reading = [&](LevelSetSide side) -> LightAt {
@@ -58,8 +60,12 @@ Shader baked_shader(const Volume& volume, const LightFile& light, const RenderOp
     return [reader, isovalue](const SurfacePoint& point) { return reader->at_index(point.index, isovalue); };
   };
   const SurfaceColour colour = surface_colour(light, options.isovalue);
-  if (!light.inner && options.side.or_outer() == LevelSetSide::kOuter)
-    return global_shader(reading(side_towards(light, outer)), colour);
+  if (options.side.given()) {
+    const OuterSide shown = options.side.or_outer() == LevelSetSide::kInner ? opposite(outer) : outer;
+    const LightAt light_there = reading(side_towards(light, shown));
+    return global_shader(light_there, light_there, colour);
+  }
+  if (!light.inner) return global_shader(reading(side_towards(light, outer)), colour);
   LightAt first = reading(LevelSetSide::kOuter);
   LightAt second = reading(LevelSetSide::kInner);
   if (outer != light_outer(light)) std::swap(first, second);
@@ -101,8 +107,6 @@ void run_render(const RenderOptions& options, Session& session) {
   }
   require_png(options.output, width, height);
   if (mode == "both") require_png(options.output, 2 * width + kGap, height);
-  session.require_outputs({{"--output", options.output}},
-                          {{"VOLUME", options.volume.source()}, {"--light", options.light.path()}});
   const Volume volume = options.volume.read(session);
   std::optional<LightFile> light;
   if (options.light.given()) light = options.light.read(volume, session);
@@ -120,8 +124,8 @@ void run_render(const RenderOptions& options, Session& session) {
   Image image = session.timed("render", [&]() -> Image {
     if (mode == "normal") return draw(normal_shader());
     if (mode == "local") return draw(local_shader(albedo));
-    Image global = draw(baked_shader(volume, *light, options, settings.outer, session.run));
-    expose(global, options.exposure);
+    const Shader shader = baked_shader(volume, *light, options, settings.outer, session.run);
+    Image global = draw(exposed(shader, options.exposure));
     return mode == "both" ? side_by_side(draw(local_shader(albedo)), global, kGap, Vec3f(1.0f)) : global;
   });
   session.timed("write", [&] {
@@ -136,10 +140,11 @@ void run_render(const RenderOptions& options, Session& session) {
 void add_render_command(CLI::App& program, Session& session) {
   CLI::App& command = *program.add_subcommand("render", "A picture of one isosurface; needs no display and no GPU");
   const auto options = std::make_shared<RenderOptions>();
-  options->volume.add_to(command);
+  options->volume.add_to(command, session);
   add_isovalue(command, options->isovalue);
-  command.add_option("-o,--output", options->output, "the picture to write")->required()->type_name("IMAGE.png");
-  options->light.add_to(command);
+  session.writes(
+      command.add_option("-o,--output", options->output, "the picture to write")->required()->type_name("IMAGE.png"));
+  options->light.add_to(command, session);
   options->side.add_to(command,
                        "show this side alone and look through the other (default: both, each in its own light where "
                        "the light has it)");
@@ -157,7 +162,7 @@ void add_render_command(CLI::App& program, Session& session) {
                   "normal: normals as colours")
       ->check(CLI::IsMember({"global", "local", "both", "normal"}));
   command.add_option("--samples", options->samples, "rays a pixel, squared (default 3)")
-      ->check(CLI::Range(1, 16))
+      ->transform(whole_number(1, 16))
       ->type_name("N");
   command.add_option("--exposure", options->exposure, "stops by which the global light is made brighter")
       ->check(finite_number())

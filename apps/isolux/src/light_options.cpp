@@ -2,10 +2,16 @@
 
 #include <fmt/format.h>
 #include <isolux/bake/light_metadata.h>
+#include <isolux/volume_io/read.h>
+
+#include <string>
+#include <vector>
 
 namespace isolux {
 
-void LightOptions::add_to(CLI::App& command) {
+void LightOptions::add_to(CLI::App& command, Session& session) {
+  const auto files = [this] { return given() ? volume_files(path_) : std::vector<std::string>(); };
+  session.reads({.name = "--light", .paths = files});
   command.add_option("--light", path_, "the light that `isolux bake` wrote for this volume")->type_name("LIGHT.nrrd");
   command.add_flag("--force", force_, "use the light of another volume all the same");
 }

@@ -13,9 +13,8 @@ namespace isolux {
 /// --light LIGHT.nrrd and --force.
 class LightOptions {
  public:
-  void add_to(CLI::App& command);
+  void add_to(CLI::App& command, Session& session);
   [[nodiscard]] bool given() const { return !path_.empty(); }
-  [[nodiscard]] const std::string& path() const { return path_; }
   /// Reads the light and refuses that of another volume unless --force. \throw IoError, InvalidInput
   [[nodiscard]] LightFile read(const Volume& volume, Session& session) const;
   /// The light of one side of what was read. \throw InvalidInput if it does not have it

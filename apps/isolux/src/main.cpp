@@ -20,10 +20,17 @@ namespace {
 /// \throw UsageError if the first word is neither an option nor a command; CLI11 would only say that a command is
 /// missing.
 void require_command(const CLI::App& program, int argc, char** argv) {
-  if (argc < 2 || argv[1][0] == '-') return;
+  if (argc < 2) return;
+  const std::string word = argv[1];
+  if (word.starts_with('-')) {
+    if (program.get_option_no_throw(word) != nullptr) return;
+    throw isolux::UsageError(
+        fmt::format("'{}' before the command: allowed there are --help and --version; what a command takes goes behind "
+                    "it, as in isolux info VOLUME --quiet",
+                    word));
+  }
   std::vector<std::string> known;
   for (const CLI::App* command : program.get_subcommands({})) known.push_back(command->get_name());
-  const std::string word = argv[1];
   if (std::find(known.begin(), known.end(), word) != known.end()) return;
   const std::string near = isolux::nearest_word(word, known);
   throw isolux::UsageError(fmt::format("no command is called '{}'{}; there are {}", word,

@@ -34,11 +34,12 @@ std::optional<int> whole(const std::string& text) {
   return value;
 }
 
-double number(const std::string& option, const std::string& text) {
+/// One of the numbers of `text`; the message shows it all, as it was given.
+double number(const std::string& option, const std::string& part, const std::string& text, const std::string& allowed) {
   try {
-    return parse_number(option, text);
-  } catch (const InvalidInput& error) {
-    throw UsageError(error.what());
+    return parse_number(option, part);
+  } catch (const InvalidInput&) {
+    throw UsageError(fmt::format("{} = '{}': '{}' is no finite number; allowed {}", option, text, part, allowed));
   }
 }
 
@@ -69,7 +70,8 @@ std::pair<int, int> parse_size2(const std::string& option, const std::string& te
 ValueRange parse_range(const std::string& option, const std::string& text) {
   const auto parts = split(text, ':');
   if (parts.size() != 2) throw UsageError(fmt::format("{} = '{}': allowed is LO:HI", option, text));
-  const ValueRange range{float(number(option, parts[0])), float(number(option, parts[1]))};
+  const auto bound = [&](const std::string& part) { return float(number(option, part, text, "is LO:HI")); };
+  const ValueRange range{bound(parts[0]), bound(parts[1])};
   if (!std::isfinite(range.low) || !std::isfinite(range.high))
     throw UsageError(fmt::format("{} = '{}': allowed are numbers that a 4-byte float holds", option, text));
   if (range.low > range.high) throw UsageError(fmt::format("{} = '{}': LO is above HI", option, text));
@@ -77,11 +79,10 @@ ValueRange parse_range(const std::string& option, const std::string& text) {
 }
 
 std::vector<double> parse_numbers(const std::string& option, const std::string& text, std::size_t count) {
+  const std::string allowed = count == 1 ? "is a number" : fmt::format("are {} numbers with commas between", count);
   std::vector<double> numbers;
-  for (const auto& part : split(text, ',')) numbers.push_back(number(option, part));
-  if (numbers.size() != count) {
-    throw UsageError(fmt::format("{} = '{}': allowed are {} numbers with commas between", option, text, count));
-  }
+  for (const auto& part : split(text, ',')) numbers.push_back(number(option, part, text, allowed));
+  if (numbers.size() != count) throw UsageError(fmt::format("{} = '{}': allowed {}", option, text, allowed));
   return numbers;
 }
 
@@ -116,7 +117,8 @@ void apply_settings(const std::string& option, const std::vector<std::string>& t
     if (settings == nullptr)
       throw UsageError(
           fmt::format("{} '{}': the name before the point is one of {}", option, text, fmt::join(names, ", ")));
-    (*settings)[key] = text.substr(equals + 1);
+    if (!settings->emplace(key, text.substr(equals + 1)).second)
+      throw UsageError(fmt::format("{} '{}': {} is given twice", option, text, text.substr(0, equals)));
   }
 }
 

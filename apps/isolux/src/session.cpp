@@ -18,13 +18,13 @@ Session::Session() : stages(builtin_stages()), report(nlohmann::json::object()) 
 
 void Session::add_common_options(CLI::App& command) {
   command.add_option("--threads", run.threads, "threads to use (default: all)")
-      ->check(CLI::Range(1, 4096))
+      ->transform(whole_number(1, 4096))
       ->type_name("T");
   command.add_option("--seed", run.seed, "seed of all random numbers (default 1)")
-      ->check(seed_number())
+      ->transform(whole_number(0, std::numeric_limits<std::uint64_t>::max()))
       ->type_name("S");
-  command.add_option("--report", report_path_, "write what was done and how long it took, as JSON")
-      ->type_name("FILE.json");
+  writes(command.add_option("--report", report_path_, "write what was done and how long it took, as JSON")
+             ->type_name("FILE.json"));
   command.add_flag("--quiet", quiet_, "no progress and no remarks");
   if (command.get_version_ptr() == nullptr) command.set_version_flag("--version", std::string("isolux ") + kVersion);
   for (CLI::Option* option : command.get_options()) {
@@ -34,17 +34,11 @@ void Session::add_common_options(CLI::App& command) {
 
 void Session::run_action() {
   if (!quiet_) run.progress = make_progress();
-  // Commands that write nothing else; the others say so themselves, with all that they write.
-  require_outputs({});
+  require_output_files(written_, read_);
   const Stopwatch total;
   action_();
   add_seconds("total", total.seconds());
   if (!report_path_.empty()) write_report();
-}
-
-void Session::require_outputs(std::vector<NamedFile> written, const std::vector<NamedFile>& read) const {
-  written.push_back({"--report", report_path_});
-  require_output_files(written, read);
 }
 
 void Session::add_seconds(const std::string& stage, double seconds) {

@@ -8,6 +8,7 @@
 #include <functional>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "output_files.h"
@@ -30,9 +31,14 @@ class Session {
   void add_common_options(CLI::App& command);
   /// What runs once the whole command line was understood.
   void on_run(std::function<void()> action) { action_ = std::move(action); }
+  /// Finds out first whether what is written has a place: require_output_files(). \throw IoError, UsageError
   void run_action();
-  /// What a command does first: see require_output_files; --report is one of those written. \throw IoError, UsageError
-  void require_outputs(std::vector<NamedFile> written, const std::vector<NamedFile>& read = {}) const;
+
+  /// Every option that names a file says so here, whatever its command, when it is added.
+  void reads(FileOption option) { read_.push_back(std::move(option)); }
+  void reads(const CLI::Option* option) { reads(file_of(option)); }
+  void writes(FileOption option) { written_.push_back(std::move(option)); }
+  void writes(const CLI::Option* option) { writes(file_of(option)); }
 
   /// Runs `work`, counting its seconds under `stage` in the report.
   template <class Work>
@@ -63,6 +69,8 @@ class Session {
 
   bool quiet_ = false;
   std::string report_path_;
+  std::vector<FileOption> read_;
+  std::vector<FileOption> written_;
   std::function<void()> action_;
 };
 

@@ -4,6 +4,7 @@
 #include <isolux/core/error.h>
 #include <isolux/core/options.h>
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <cstdint>
@@ -19,7 +20,10 @@ std::string guess(const std::string& word, const CLI::App& app) {
     for (const auto& name : option->get_lnames()) known.push_back("--" + name);
   }
   for (const CLI::App* command : app.get_subcommands({})) known.push_back(command->get_name());
-  const std::string near = nearest_word(word, known);
+  // A beginning is meant for the whole, not for something shorter that is fewer letters away.
+  const auto begun = [&](const std::string& name) { return word.size() > 2 && name.starts_with(word); };
+  const auto whole = std::find_if(known.begin(), known.end(), begun);
+  const std::string near = whole != known.end() ? *whole : nearest_word(word, known);
   return near.empty() ? "" : fmt::format(" (did you mean {}?)", near);
 }
 
@@ -46,7 +50,7 @@ std::string explain(const CLI::ParseError& error, const CLI::App& app) {
     const std::string near = guess(word, app);
     if (unknown) why += near;
     // What is missing may be there, misspelt.
-    if (missing && word.starts_with('-')) why += fmt::format("; not known is {}{}", word, near);
+    if (missing && word.starts_with('-') && word != "--") why += fmt::format("; not known is {}{}", word, near);
   }
   return why;
 }
@@ -73,13 +77,17 @@ TextCheck finite_number() {
   };
 }
 
-TextCheck seed_number() {
-  return [](const std::string& text) {
-    std::uint64_t seed = 0;
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), seed);
-    const bool good = error == std::errc() && end == text.data() + text.size();
-    return good ? "" : refusal(text, "a whole number from 0 to 18446744073709551615");
+CLI::Validator whole_number(std::uint64_t low, std::uint64_t high) {
+  const auto to_decimal = [low, high](std::string& text) -> std::string {
+    std::uint64_t value = 0;
+    const char* const begin = text.data() + (text.starts_with('+') ? 1 : 0);
+    const auto [end, error] = std::from_chars(begin, text.data() + text.size(), value);
+    const bool good = error == std::errc() && end == text.data() + text.size() && value >= low && value <= high;
+    if (!good) return refusal(text, fmt::format("a whole number from {} to {}", low, high));
+    text = std::to_string(value);
+    return "";
   };
+  return {to_decimal, fmt::format("{} to {}", low, high)};
 }
 
 TextCheck key_and_value() {

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <CLI/App.hpp>
+#include <CLI/Validators.hpp>
+#include <cstdint>
 #include <functional>
 #include <string>
 
@@ -19,8 +21,8 @@ using TextCheck = std::function<std::string(const std::string&)>;
 [[nodiscard]] TextCheck number_within(double low, double high);
 /// A number that a float can hold.
 [[nodiscard]] TextCheck finite_number();
-/// A whole number of 64 bits.
-[[nodiscard]] TextCheck seed_number();
+/// For CLI::Option::transform: a whole number in decimal digits. CLI11 takes 010 for eight and 0x10 for sixteen.
+[[nodiscard]] CLI::Validator whole_number(std::uint64_t low, std::uint64_t high);
 /// KEY=VALUE. What is not is perhaps the VOLUME, which CLI11 takes for one more setting.
 [[nodiscard]] TextCheck key_and_value();
 /// Not empty: "" is what a script's unset variable leaves.

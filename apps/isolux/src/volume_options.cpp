@@ -14,7 +14,12 @@
 
 namespace isolux {
 
-void VolumeOptions::add_to(CLI::App& command) {
+void VolumeOptions::add_to(CLI::App& command, Session& session) {
+  const auto files = [this, &session] {
+    const std::vector<std::string> none;
+    return source_.empty() ? none : volume_files(source_, read_options(session), session.stages.readers);
+  };
+  session.reads({.name = "VOLUME", .paths = files});
   command.add_option("VOLUME", source_, "a file, a folder of DICOM slices, or gen:NAME[:N]")->required();
   command.add_option("--dims", dims_, "grid points of a headerless file")->type_name("NXxNYxNZ");
   command.add_option("--type", type_, "scalar type of a headerless file, such as uint8 or float32")->type_name("TYPE");

@@ -14,7 +14,7 @@ namespace isolux {
 /// The VOLUME argument and what goes with it.
 class VolumeOptions {
  public:
-  void add_to(CLI::App& command);
+  void add_to(CLI::App& command, Session& session);
   [[nodiscard]] const std::string& source() const { return source_; }
   /// As in the file and in its type, with --replace-nonfinite applied: else voxels may be infinite or not numbers; axes
   /// may be 1 wide. \throw UsageError, IoError, InvalidInput

@@ -24,6 +24,7 @@
 #include "parse.h"
 #include "program.h"
 #include "registry_json.h"
+#include "scene_files.h"
 #include "session.h"
 #include "usage.h"
 #include "volume_options.h"
@@ -60,11 +61,12 @@ struct Words {
   std::string backend;
   std::vector<std::string> set;
 
-  void add_to(CLI::App& program) {
-    volume.add_to(program);
+  void add_to(CLI::App& program, Session& session) {
+    volume.add_to(program, session);
     program.get_option("VOLUME")->required(false)->description(
         "a file, a folder of DICOM slices, or gen:NAME[:N]; without one a test field is shown");
-    light.add_to(program);
+    light.add_to(program, session);
+    session.reads({.name = "--scene", .paths = [this] { return scene_files(scene); }});
     program
         .add_option(
             "--scene", scene,
@@ -87,9 +89,10 @@ struct Words {
     program.add_option("--backend", backend, "extractor backend")->type_name("NAME");
     program.add_option("--set", set, "an option of the extractor")->check(key_and_value())->type_name("KEY=VALUE");
     program.add_option("--size", size, "of the window (default 1200x800)")->type_name("WxH");
-    program.add_option("--screenshot", screenshot, "write a picture before leaving")->type_name("OUT.png");
+    session.writes(
+        program.add_option("--screenshot", screenshot, "write a picture before leaving")->type_name("OUT.png"));
     program.add_option("--frames", frames, "draw so many pictures and leave")
-        ->check(CLI::Range(1, 1000000))
+        ->transform(whole_number(1, 1000000))
         ->type_name("N");
   }
 
@@ -134,9 +137,6 @@ void warn_outside(std::optional<double> isovalue, const viewer::Document& docume
 }
 
 void look(const Words& words, const viewer::AppSettings& settings, Session& session) {
-  session.require_outputs(
-      {{"--screenshot", words.screenshot}},
-      {{"VOLUME", words.volume.source()}, {"--light", words.light.path()}, {"--scene", words.scene}});
   const viewer::WindowSystem windows;
   const bool given = !words.volume.source().empty();
   StoredVolume volume =
@@ -153,7 +153,7 @@ int view(int argc, char** argv, Session& session) {
   Words words;
   CLI::App program("Looks at the isosurfaces of a volume, in local and in global light.", "isolux view");
   program.set_version_flag("--version", std::string("isolux ") + kVersion);
-  words.add_to(program);
+  words.add_to(program, session);
   // `isolux backends`, which links no GL, asks here for the stage that does.
   program.add_flag_callback(
       "--uploaders",

@@ -33,7 +33,7 @@ void Viewer::draw_pane(const Pane& pane, int height) {
   view.style = style_;
   view.colour = surface_colour_of(document_, lighted_.scene, float(slider_->value()));
   view.lighting = lighting_of(pane);
-  // As in isolux render it is of global light, and of the ground behind that.
+  // As in isolux render it is of global light alone, not of the ground behind.
   view.exposure = view.lighting == Lighting::kGlobal ? float(std::exp2(exposure_stops_)) : 1.0f;
   view.aspect = std::max(pane.box.width, 1.0) / std::max(pane.box.height, 1.0);
   trackball_->reframe(
@@ -41,7 +41,7 @@ void Viewer::draw_pane(const Pane& pane, int height) {
   view.camera = trackball_->camera();
   const int left = int(pane.box.x);
   const int width = std::max(int(pane.box.width), 1);
-  const float ground = float(srgb_code(view.exposure * kBackground)) / 255.0f;
+  const float ground = float(srgb_code(kBackground)) / 255.0f;
   glViewport(left, 0, width, height);
   glScissor(left, 0, width, height);
   glEnable(GL_SCISSOR_TEST);

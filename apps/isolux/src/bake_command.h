@@ -1,0 +1,41 @@
+#pragma once
+
+#include <isolux/bake/bake.h>
+
+#include <string>
+#include <vector>
+
+#include "bake_options.h"
+#include "volume_options.h"
+
+namespace isolux {
+
+/// The words of `isolux bake`.
+struct BakeOptions {
+  VolumeOptions volume;
+  TraceOptions trace;
+  std::string output;
+  std::string iso_range;
+  std::string texels;
+  std::string lattice = "cells";
+  std::string bounce_method;
+  std::string sites = "all";
+  double rmse = 0.0;
+  double time = 0.0;
+  std::string error_grid;
+  double texels_a_cell = 0.0;
+  std::size_t samples = 0;
+  std::string sampler;
+  std::string resampler;
+  std::vector<std::string> set;
+  bool compress = false;
+
+  /// --texels auto
+  [[nodiscard]] bool chooses_texels() const { return texels == "auto"; }
+};
+
+/// What the words ask for, every backend named. \throw UsageError for words that contradict each other, so that nothing
+/// is read in vain
+[[nodiscard]] BakeSettings bake_settings(const BakeOptions& options, const Stages& stages);
+
+}  // namespace isolux
