@@ -97,7 +97,7 @@ class Interpreter {
   }
 
   void take_type() {
-    std::string name = fmt::format("{}", fmt::join(nrrd_words(need("type")), " "));
+    const std::string name = lower_case(fmt::format("{}", fmt::join(nrrd_words(need("type")), " ")));
     for (const auto& [type, names] : type_names()) {
       if (std::find(names.begin(), names.end(), name) == names.end()) continue;
       header_.layout.type = type;
@@ -107,7 +107,7 @@ class Interpreter {
   }
 
   void take_encoding() {
-    const std::string& encoding = need("encoding");
+    const std::string encoding = lower_case(need("encoding"));
     if (encoding == "raw") {
       header_.encoding = NrrdEncoding::kRaw;
     } else if (encoding == "gzip" || encoding == "gz") {
@@ -117,10 +117,10 @@ class Interpreter {
     } else {
       refuse("encoding", "supported are raw, gzip and ascii");
     }
-    const std::string* endian = find("endian");
-    if (endian != nullptr) {
-      if (*endian != "little" && *endian != "big") refuse("endian", "allowed are little and big");
-      header_.layout.big_endian = *endian == "big";
+    if (const std::string* written = find("endian"); written != nullptr) {
+      const std::string endian = lower_case(*written);
+      if (endian != "little" && endian != "big") refuse("endian", "allowed are little and big");
+      header_.layout.big_endian = endian == "big";
     } else if (header_.encoding != NrrdEncoding::kText && bytes_per_scalar(header_.layout.type) > 1) {
       throw InvalidInput(fmt::format("{}: the header has no 'endian', which type {} needs", header_.path,
                                      scalar_type_name(header_.layout.type)));
@@ -141,11 +141,11 @@ class Interpreter {
   void take_axis_words() {
     if (find("kinds") != nullptr) {
       const auto words = per_axis("kinds");
-      for (std::size_t a = 0; a < words.size(); ++a) header_.axes[a].kind = words[a];
+      for (std::size_t a = 0; a < words.size(); ++a) header_.axes[a].kind = lower_case(words[a]);
     }
     if (find("centerings") != nullptr) {
       const auto words = per_axis("centerings");
-      for (std::size_t a = 0; a < words.size(); ++a) header_.axes[a].node_centered = words[a] == "node";
+      for (std::size_t a = 0; a < words.size(); ++a) header_.axes[a].node_centered = lower_case(words[a]) == "node";
     }
   }
 

@@ -60,8 +60,7 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, 10> kSynonym
                                                                                       {"sampleunits", "sample units"}}};
 
 std::string field_name(std::string_view written) {
-  std::string name(written);
-  std::transform(name.begin(), name.end(), name.begin(), [](unsigned char c) { return char(std::tolower(c)); });
+  std::string name = lower_case(written);
   for (const auto& [synonym, canonical] : kSynonyms) {
     if (name == synonym) return std::string(canonical);
   }
@@ -95,14 +94,15 @@ std::string excerpt(std::string_view line) {
 }
 
 void take_line(const std::string& path, const std::string& line, NrrdText& text) {
+  // A key may have colons in it, a field's name not.
+  if (const auto pair = line.find(":="); pair < line.find(": ")) {
+    text.key_values[unescape(std::string_view(line).substr(0, pair))] = unescape(line.substr(pair + 2));
+    return;
+  }
   const auto colon = line.find(':');
   if (colon == std::string::npos || colon + 1 >= line.size())
     throw InvalidInput(
         fmt::format("{}: header line '{}' is neither 'field: value' nor 'key:=value'", path, excerpt(line)));
-  if (line[colon + 1] == '=') {
-    text.key_values[unescape(std::string_view(line).substr(0, colon))] = unescape(line.substr(colon + 2));
-    return;
-  }
   const std::string name = field_name(std::string_view(line).substr(0, colon));
   if (std::find(kFieldNames.begin(), kFieldNames.end(), name) == kFieldNames.end())
     throw InvalidInput(fmt::format("{}: NRRD has no field '{}'", path, excerpt(name)));
@@ -139,6 +139,12 @@ NrrdText read_nrrd_text(const std::string& path) {
     if (c == std::ifstream::traits_type::eof()) return text;
   }
   throw InvalidInput(fmt::format("{}: the header has more than {} lines", path, kMostLines));
+}
+
+std::string lower_case(std::string_view text) {
+  std::string lower(text);
+  std::transform(lower.begin(), lower.end(), lower.begin(), [](unsigned char c) { return char(std::tolower(c)); });
+  return lower;
 }
 
 std::vector<std::string> nrrd_words(std::string_view text) {
