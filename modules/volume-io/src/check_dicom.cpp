@@ -156,6 +156,10 @@ CheckedHeader check_dicom(const std::string& path) {
         throw InvalidInput(fmt::format("{}: {} bits a pixel: supported are 8, 16 and 32", path, bits));
       if (!compressed && found < needed)
         throw IoError(fmt::format("{}: {} bytes of pixel data expected, {} found", path, needed, found));
+      // GDCM makes room for what the length says, and looks for it for long.
+      if (!compressed && e.length > walker.bytes_behind(e))
+        throw IoError(
+            fmt::format("{}: pixel data of {} bytes, the file has {} behind their head", path, e.length, found));
       if (compressed) walker.skip(e);
       return {.size = {int(columns), int(rows), 1}};
     }

@@ -67,5 +67,14 @@ TEST_F(Itk, RefusesUnevenMixedAndBrokenDicomFolders) {
   EXPECT_THAT(read(), testing::AnyOf(HasSubstr("ends early"), HasSubstr("the file has 300")));
 }
 
+// GDCM takes seconds and gigabytes for it.
+TEST_F(Itk, RefusesDicomPixelsThatAreLongerThanTheFile) {
+  for (const std::uint32_t length : {0xFFFFFFFEu, 0xFFFFFFFFu, 14u}) {
+    std::string bytes = test::dicom_sample({});
+    test::put(bytes, bytes.size() - 16, length);
+    EXPECT_THAT(refused("a.dcm", bytes), HasSubstr(fmt::format("pixel data of {} bytes, the file has 12", length)));
+  }
+}
+
 }  // namespace
 }  // namespace isolux
