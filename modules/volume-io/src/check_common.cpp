@@ -57,18 +57,6 @@ std::vector<std::string> files_in_folder(const std::string& folder, bool (*is)(c
   return files;
 }
 
-std::uint64_t inflated_bytes(const std::string& path, std::uint64_t offset, std::uint64_t most) {
-  const auto source = gzip_source(path, offset);
-  std::vector<std::byte> buffer(std::size_t(1) << 18);
-  std::uint64_t total = 0;
-  while (total < most) {
-    const std::size_t got = source->read(buffer);
-    total += got;
-    if (got == 0) break;
-  }
-  return total;
-}
-
 void require_finite(const std::string& path, std::string_view what, std::span<const double> numbers) {
   if (!std::all_of(numbers.begin(), numbers.end(), [](double x) { return std::isfinite(x); }))
     throw InvalidInput(fmt::format("{}: {} is {}: finite numbers are needed", path, what, fmt::join(numbers, " ")));

@@ -161,7 +161,7 @@ CheckedHeader check_dicom(const std::string& path) {
         throw IoError(
             fmt::format("{}: pixel data of {} bytes, the file has {} behind their head", path, e.length, found));
       if (compressed) walker.skip(e);
-      return {.size = {int(columns), int(rows), 1}};
+      return {.size = {int(columns), int(rows), 1}, .type = {}, .data = {}};
     }
     walker.go_to(e.value);
     walker.skip(e);

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <charconv>
 #include <cmath>
 #include <fstream>
@@ -16,10 +17,12 @@ namespace isolux::detail {
 namespace {
 
 constexpr std::size_t kLongestMetaHeader = 1 << 16;
+constexpr std::size_t kLongestText = 254;
 
 struct MetaText {
   std::map<std::string, std::string> fields;
-  std::uint64_t end = 0;  ///< offset behind the header
+  std::vector<std::string> keys;  ///< in the file's order
+  std::uint64_t end = 0;          ///< offset behind the header
 };
 
 // Lines "Key = Value" up to ElementDataFile, the last one.
@@ -42,6 +45,7 @@ MetaText read_meta_text(const std::string& path) {
     for (const auto& word : values) value += value.empty() ? word : " " + word;
     if (!text.fields.emplace(key.front(), value).second)
       throw InvalidInput(fmt::format("{}: '{}' is given twice", path, key.front()));
+    text.keys.push_back(key.front());
     if (key.front() == "ElementDataFile") return text;
   }
   throw InvalidInput(fmt::format("{}: the MetaImage header has no ElementDataFile", path));
@@ -55,11 +59,22 @@ class MetaFields {
     const auto it = text_.fields.find(key);
     return it == text_.fields.end() ? otherwise : it->second;
   }
-  [[nodiscard]] bool truth(const std::string& key) const {
-    const std::string word = text(key, "False");
-    if (word == "True" || word == "true" || word == "1") return true;
-    if (word == "False" || word == "false" || word == "0") return false;
+  [[nodiscard]] bool has(const std::string& key) const { return text_.fields.contains(key); }
+  [[nodiscard]] bool truth(const std::string& key, bool otherwise) const {
+    std::string word = text(key, otherwise ? "true" : "false");
+    std::transform(word.begin(), word.end(), word.begin(), [](unsigned char c) { return char(std::tolower(c)); });
+    if (word == "true" || word == "1") return true;
+    if (word == "false" || word == "0") return false;
     refuse(key, "allowed are True and False");
+  }
+  [[nodiscard]] double number(const std::string& key, double otherwise) const {
+    const auto values = numbers(key, 1);
+    return values.empty() ? otherwise : values.front();
+  }
+  /// Whether the header has both and `first` stands before `second`.
+  [[nodiscard]] bool in_order(const std::string& first, const std::string& second) const {
+    const auto at = [&](const std::string& key) { return std::find(text_.keys.begin(), text_.keys.end(), key); };
+    return at(first) < at(second) && at(second) != text_.keys.end();
   }
   /// `count` numbers, or none if the key is not there.
   [[nodiscard]] std::vector<double> numbers(const std::string& key, std::size_t count) const {
@@ -74,6 +89,7 @@ class MetaFields {
     if (text_.fields.contains(key) && values.size() != count) refuse(key, fmt::format("{} numbers are needed", count));
     return values;
   }
+  [[nodiscard]] const std::string& path() const { return path_; }
   [[noreturn]] void refuse(const std::string& key, std::string_view allowed) const {
     throw InvalidInput(fmt::format("{}: '{} = {}': {}", path_, key, text(key), allowed));
   }
@@ -83,17 +99,42 @@ class MetaFields {
   MetaText text_;
 };
 
-std::size_t voxel_bytes(const MetaFields& fields) {
-  static const std::map<std::string, std::size_t> types = {
-      {"MET_CHAR", 1},      {"MET_UCHAR", 1},      {"MET_SHORT", 2}, {"MET_USHORT", 2},
-      {"MET_INT", 4},       {"MET_UINT", 4},       {"MET_LONG", 4},  {"MET_ULONG", 4},
-      {"MET_LONG_LONG", 8}, {"MET_ULONG_LONG", 8}, {"MET_FLOAT", 4}, {"MET_DOUBLE", 8}};
+ScalarType element_type(const MetaFields& fields) {
+  // MET_LONG has four bytes, whatever a long has.
+  static const std::map<std::string, ScalarType> types = {
+      {"MET_CHAR", ScalarType::kInt8},       {"MET_UCHAR", ScalarType::kUint8},
+      {"MET_SHORT", ScalarType::kInt16},     {"MET_USHORT", ScalarType::kUint16},
+      {"MET_INT", ScalarType::kInt32},       {"MET_UINT", ScalarType::kUint32},
+      {"MET_LONG", ScalarType::kInt32},      {"MET_ULONG", ScalarType::kUint32},
+      {"MET_LONG_LONG", ScalarType::kInt64}, {"MET_ULONG_LONG", ScalarType::kUint64},
+      {"MET_FLOAT", ScalarType::kFloat32},   {"MET_DOUBLE", ScalarType::kFloat64}};
   const auto it = types.find(fields.text("ElementType"));
   if (it == types.end())
     fields.refuse("ElementType",
                   "supported are MET_ CHAR, SHORT, INT, LONG, LONG_LONG, their "
                   "unsigned forms, FLOAT and DOUBLE");
   return it->second;
+}
+
+// What MetaIO, which reads the frame, crashes on or refuses without saying why.
+void check_for_meta_io(const MetaFields& fields) {
+  for (const auto* key : {"DimSize", "ElementSpacing", "ElementSize", "Offset", "Position", "Origin", "TransformMatrix",
+                          "Rotation", "Orientation", "CenterOfRotation"})
+    if (fields.has(key) && !fields.in_order("NDims", key)) fields.refuse(key, "NDims has to stand before it");
+  for (const auto* key : {"Comment", "Name", "ObjectSubType", "TransformType", "AnatomicalOrientation", "Modality",
+                          "DistanceUnits", "AcquisitionDate"})
+    if (const auto length = fields.text(key).size(); length > kLongestText)
+      throw InvalidInput(
+          fmt::format("{}: '{}' of {} letters: allowed are {}", fields.path(), key, length, kLongestText));
+}
+
+bool is_big_endian(const MetaFields& fields) {
+  const char* const key = fields.has("ElementByteOrderMSB") ? "ElementByteOrderMSB" : "BinaryDataByteOrderMSB";
+  const bool big = fields.truth(key, false);
+  if (fields.truth("BinaryDataByteOrderMSB", big) != big)
+    fields.refuse("BinaryDataByteOrderMSB",
+                  fmt::format("ElementByteOrderMSB = {} says otherwise", fields.text("ElementByteOrderMSB")));
+  return big;
 }
 
 std::array<std::int64_t, 3> sizes(const MetaFields& fields) {
@@ -136,6 +177,25 @@ std::string data_file(const std::string& path, const MetaFields& fields, const R
   return resolve_data_file(path, named, options.allow_external_data);
 }
 
+// Where the data begin in their file, and whether something may stand behind them.
+void place_data(const MetaFields& fields, std::uint64_t header_end, std::uint64_t count, DataPlace& place) {
+  const bool local = is_local(fields);
+  const double skip = fields.number("HeaderSize", 0.0);
+  if (skip < -1.0 || skip > 1e15 || std::floor(skip) != skip)
+    fields.refuse("HeaderSize", "a whole number of at least -1 is needed");
+  // MetaIO counts from the file's start even behind a header of its own, which nobody can mean.
+  if (local && skip > 0.0) fields.refuse("HeaderSize", "allowed beside ElementDataFile = LOCAL are 0 and -1");
+  if (place.compressed && skip < 0.0) fields.refuse("HeaderSize", "allowed of compressed data is 0 and more");
+  place.more_allowed = skip != 0.0;
+  place.offset = (local ? header_end : 0) + std::uint64_t(std::max(skip, 0.0));
+  const std::uint64_t size = require_file(place.file);
+  if (place.offset > size)
+    throw IoError(fmt::format("{}: the data begin at byte {}, the file has {}", place.file, place.offset, size));
+  require_room(place, count);
+  // -1: the data are the file's last bytes.
+  if (skip < 0.0) place.offset = size - count * bytes_per_scalar(place.layout.type);
+}
+
 }  // namespace
 
 std::string meta_image_data_file(const std::string& path, const ReadOptions& options) {
@@ -154,35 +214,21 @@ CheckedHeader check_meta_image(const std::string& path, const ReadOptions& optio
   const std::uint64_t header_end = text.end;
   const MetaFields fields(path, std::move(text));
   const auto size = sizes(fields);
-  const std::size_t width = voxel_bytes(fields);
+  const ScalarType type = element_type(fields);
   if (fields.text("ElementNumberOfChannels", "1") != "1")
     fields.refuse("ElementNumberOfChannels", "supported is 1, one number a voxel");
-  if (fields.text("BinaryData", "True") != "True") fields.refuse("BinaryData", "supported is True");
+  if (!fields.truth("BinaryData", true)) fields.refuse("BinaryData", "supported is True");
   check_geometry(path, fields);
-  const std::uint64_t needed = checked_count(path, size, width) * width;
-  const auto skips = fields.numbers("HeaderSize", 1);
-  if (!skips.empty() && (skips[0] < -1.0 || skips[0] > 1e15 || std::floor(skips[0]) != skips[0]))
-    fields.refuse("HeaderSize", "a whole number of at least -1 is needed");
-
-  const bool local = is_local(fields);
-  const std::string data = data_file(path, fields, options);
-  const std::uint64_t data_size = require_file(data);
-  const std::uint64_t begin = (local ? header_end : 0) + std::uint64_t(skips.empty() ? 0.0 : std::max(skips[0], 0.0));
-  if (begin > data_size)
-    throw IoError(fmt::format("{}: the data begin at byte {}, the file has {}", data, begin, data_size));
-  std::uint64_t found = data_size - begin;
-  const bool compressed = fields.truth("CompressedData");
-  if (compressed) {
-    if (needed / kLargestInflation > data_size)
-      throw IoError(
-          fmt::format("{}: {} bytes expected, more than {} compressed bytes can hold", data, needed, data_size));
-    found = inflated_bytes(data, begin, needed + 1);
-  }
-  // MetaIO takes the data from the end of a file that a HeaderSize of -1 stands for.
-  const bool foreign = !skips.empty() && skips[0] != 0.0;
-  if (found < needed || (found > needed && !foreign))
-    throw IoError(fmt::format("{}: {} bytes of data expected, {} found", data, needed, found));
-  return {.size = {int(size[0]), int(size[1]), int(size[2])}};
+  check_for_meta_io(fields);
+  // A compressed stream says itself where it ends: CompressedDataSize, which many files lack, is not needed.
+  DataPlace place{.file = data_file(path, fields, options),
+                  .compressed = fields.truth("CompressedData", false),
+                  .layout = {type, is_big_endian(fields)},
+                  .slope = fields.number("ElementToIntensityFunctionSlope", 1.0),
+                  .intercept = fields.number("ElementToIntensityFunctionOffset", 0.0)};
+  if (place.slope == 0.0) fields.refuse("ElementToIntensityFunctionSlope", "a number other than 0 is needed");
+  place_data(fields, header_end, checked_count(path, size, bytes_per_scalar(type)), place);
+  return {.size = {int(size[0]), int(size[1]), int(size[2])}, .type = type, .data = std::move(place)};
 }
 
 }  // namespace isolux::detail

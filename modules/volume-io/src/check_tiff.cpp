@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 #include <isolux/core/error.h>
 
+#include <algorithm>
 #include <array>
 #include <fstream>
 #include <map>
@@ -14,21 +15,24 @@ namespace isolux::detail {
 namespace {
 
 constexpr std::uint64_t kMostEntries = 4096;
-constexpr std::size_t kMostPages = 100000;
+constexpr int kMostPages = 100000;
 // LZW repeats up to some 3000 bytes a code of 12 bits; deflate stays below.
 constexpr std::uint64_t kLargestRatio = 4096;
 
 enum Tag : int {
+  kSubfileType = 254,
   kWidth = 256,
   kHeight = 257,
   kBits = 258,
   kCompression = 259,
   kPhotometric = 262,
   kStripOffsets = 273,
+  kOrientation = 274,
   kSamples = 277,
   kStripBytes = 279,
+  kTileWidth = 322,
   kTileOffsets = 324,
-  kTileBytes = 325
+  kSampleFormat = 339
 };
 
 // TIFF 6.0 and BigTIFF, read as far as is needed to know where its data lie.
@@ -70,8 +74,10 @@ class TiffWalker {
 
  private:
   static bool wanted(int tag) {
-    return (tag >= kWidth && tag <= kPhotometric) || tag == kStripOffsets || tag == kSamples || tag == kStripBytes ||
-           tag == kTileOffsets || tag == kTileBytes;
+    static constexpr std::array<int, 13> kWanted = {kSubfileType, kWidth,        kHeight,      kBits,    kCompression,
+                                                    kPhotometric, kStripOffsets, kOrientation, kSamples, kStripBytes,
+                                                    kTileWidth,   kTileOffsets,  kSampleFormat};
+    return std::find(kWanted.begin(), kWanted.end(), tag) != kWanted.end();
   }
   HeaderBytes bytes(std::uint64_t offset, std::uint64_t count) {
     if (offset > size_ || count > size_ - offset)
@@ -135,9 +141,8 @@ std::uint64_t one(const Tags& tags, int tag, std::uint64_t otherwise) {
 }
 
 void check_data(const std::string& path, const Tags& tags, std::uint64_t needed, std::uint64_t file_bytes) {
-  const bool tiled = tags.contains(kTileOffsets);
-  const auto offsets = tags.find(tiled ? kTileOffsets : kStripOffsets);
-  const auto counts = tags.find(tiled ? kTileBytes : kStripBytes);
+  const auto offsets = tags.find(kStripOffsets);
+  const auto counts = tags.find(kStripBytes);
   if (offsets == tags.end() || counts == tags.end() || offsets->second.size() != counts->second.size())
     throw InvalidInput(fmt::format("{}: a TIFF page does not say where its data are", path));
   std::uint64_t found = 0;
@@ -154,6 +159,37 @@ void check_data(const std::string& path, const Tags& tags, std::uint64_t needed,
     throw IoError(fmt::format("{}: a page of {} bytes expected, {} found", path, needed, found));
 }
 
+// ITK reads other pixels as zeros, as bit patterns of another type, or as colours.
+ScalarType pixel_type(const std::string& path, const Tags& tags) {
+  const std::uint64_t bits = one(tags, kBits, 1);
+  const std::uint64_t format = one(tags, kSampleFormat, 1);
+  const bool is_signed = format == 2;
+  const bool is_integer = is_signed || format == 1 || format == 4;  // 4: undefined, as many writers have it
+  if (bits == 8 && is_integer) return is_signed ? ScalarType::kInt8 : ScalarType::kUint8;
+  if (bits == 16 && is_integer) return is_signed ? ScalarType::kInt16 : ScalarType::kUint16;
+  if (bits == 32 && format == 3) return ScalarType::kFloat32;
+  throw InvalidInput(
+      fmt::format("{}: TIFF pixels of {} bits, SampleFormat {}: supported are whole numbers of 8 and 16 "
+                  "bits (SampleFormat 1 and 2) and floats of 32 (3)",
+                  path, bits, format));
+}
+
+void check_layout(const std::string& path, const Tags& tags) {
+  if (one(tags, kSamples, 1) != 1 || one(tags, kPhotometric, 1) > 1)
+    throw InvalidInput(
+        fmt::format("{}: {} samples a pixel, PhotometricInterpretation {}: supported are grey TIFF pages "
+                    "(1; 0 and 1)",
+                    path, one(tags, kSamples, 1), one(tags, kPhotometric, 1)));
+  if (tags.contains(kTileWidth) || tags.contains(kTileOffsets))
+    throw InvalidInput(fmt::format("{}: a TIFF page in tiles: supported are strips", path));
+  if (const auto orientation = one(tags, kOrientation, 1); orientation != 1 && orientation != 4)
+    throw InvalidInput(
+        fmt::format("{}: TIFF Orientation {}: supported are 1 and 4, rows from the left", path, orientation));
+  if ((one(tags, kSubfileType, 0) & 1u) != 0)
+    throw InvalidInput(
+        fmt::format("{}: a TIFF page that is a smaller copy of another (NewSubfileType): not supported", path));
+}
+
 }  // namespace
 
 bool is_tiff(const std::string& path) {
@@ -165,23 +201,21 @@ bool is_tiff(const std::string& path) {
 CheckedHeader check_tiff(const std::string& path) {
   TiffWalker walker(path);
   CheckedHeader checked;
-  std::uint64_t bits = 0;
-  for (std::size_t pages = 0; !walker.at_end(); ++pages) {
+  for (int pages = 0; !walker.at_end(); ++pages) {
     if (pages == kMostPages) throw InvalidInput(fmt::format("{}: more than {} TIFF pages", path, kMostPages));
     const Tags tags = walker.page();
     const std::array<std::int64_t, 2> size = {std::int64_t(one(tags, kWidth, 0)), std::int64_t(one(tags, kHeight, 0))};
-    const std::uint64_t page_bits = one(tags, kBits, 1);
-    if (one(tags, kSamples, 1) != 1 || one(tags, kPhotometric, 1) > 1 ||
-        (page_bits != 8 && page_bits != 16 && page_bits != 32 && page_bits != 64))
-      throw InvalidInput(fmt::format("{}: supported are grey TIFF pages of 8, 16, 32 or 64 bits", path));
-    const std::uint64_t needed = checked_count(path, size, page_bits / 8) * (page_bits / 8);
-    check_data(path, tags, needed, walker.file_bytes());
-    const Index3 page{int(size[0]), int(size[1]), int(pages) + 1};
-    if (pages > 0 && (page.x != checked.size.x || page.y != checked.size.y || page_bits != bits))
-      throw InvalidInput(fmt::format("{}: page {} is {}x{} of {} bits, the first {}x{} of {}", path, pages, page.x,
-                                     page.y, page_bits, checked.size.x, checked.size.y, bits));
+    check_layout(path, tags);
+    const ScalarType type = pixel_type(path, tags);
+    const std::size_t width = bytes_per_scalar(type);
+    check_data(path, tags, checked_count(path, size, width) * width, walker.file_bytes());
+    const Index3 page{int(size[0]), int(size[1]), pages + 1};
+    if (pages > 0 && (page.x != checked.size.x || page.y != checked.size.y || type != checked.type))
+      throw InvalidInput(fmt::format("{}: page {} is {}x{} {}, the first {}x{} {}", path, pages, page.x, page.y,
+                                     scalar_type_name(type), checked.size.x, checked.size.y,
+                                     scalar_type_name(*checked.type)));
     checked.size = page;
-    bits = page_bits;
+    checked.type = type;
   }
   if (checked.size.z == 0) throw InvalidInput(fmt::format("{}: a TIFF without a page", path));
   return checked;

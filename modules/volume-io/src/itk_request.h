@@ -8,13 +8,13 @@
 
 namespace isolux::detail {
 
-enum class ItkFormat : std::uint8_t { kNifti, kMetaImage, kLegacyVtk, kTiff, kDicom };
+enum class ItkFormat : std::uint8_t { kMetaImage, kTiff, kDicom };
 
 /// What the shared library of src/loaded/itk is to read and send.
 struct ItkRequest {
-  ItkFormat format = ItkFormat::kNifti;
+  ItkFormat format = ItkFormat::kMetaImage;
   std::string source;              ///< as the user named it
-  std::vector<std::string> files;  ///< slices or pages; of other formats the one file, under a name that ITK accepts
+  std::vector<std::string> files;  ///< slices or pages; of other formats the one file
   Index3 size{0};                  ///< by our own look at the headers
   std::optional<double> gap;       ///< between DICOM slices, if the user says, world units
 };

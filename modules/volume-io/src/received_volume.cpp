@@ -16,21 +16,29 @@ T receive_value(ByteSource& received, const std::string& path) {
   return value;
 }
 
+void require_type(const std::string& path, const CheckedHeader& expected, ScalarType type) {
+  if (expected.type && *expected.type != type)
+    throw InvalidInput(fmt::format("{}: the header says voxels of type {}, the library that reads it {}", path,
+                                   scalar_type_name(*expected.type), scalar_type_name(type)));
+}
+
 }  // namespace
 
-ReceivedVolume receive_volume(ByteSource& received, const std::string& path, Index3 expected, VoxelForm form,
-                              const Run& run) {
+ReceivedVolume receive_volume(ByteSource& received, const std::string& path, const CheckedHeader& expected,
+                              VoxelForm form, const Run& run) {
   ReceivedVolume volume;
   volume.header = receive_value<SentVolume>(received, path);
   const Index3 size = volume.header.lattice.size;
-  if (size != expected)
+  if (size != expected.size)
     throw InvalidInput(fmt::format("{}: the header says {}x{}x{} voxels, the library that reads it {}x{}x{}", path,
-                                   expected.x, expected.y, expected.z, size.x, size.y, size.z));
+                                   expected.size.x, expected.size.y, expected.size.z, size.x, size.y, size.z));
+  require_type(path, expected, volume.header.stored_type);
   const std::array<std::int64_t, 3> sizes = {size.x, size.y, size.z};
   const std::uint64_t count = checked_count(path, sizes, sizeof(float));
   const std::uint64_t blocks = volume.header.blocks;
   for (std::uint64_t b = 0; b < blocks; ++b) {
     const auto block = receive_value<SentBlock>(received, path);
+    require_type(path, expected, block.type);
     const std::uint64_t in_block = block.bytes / bytes_per_scalar(block.type);
     if (in_block != count / blocks)
       throw IoError(

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "format_checks.h"
 #include "scalars.h"
 #include "sent_volume.h"
 
@@ -10,8 +11,8 @@ struct ReceivedVolume {
   AnyValues values;
 };
 /// Takes what a child sends. \throw IoError naming `path` if fewer bytes come than are needed; InvalidInput if the size
-/// is not `expected`
-[[nodiscard]] ReceivedVolume receive_volume(ByteSource& received, const std::string& path, Index3 expected,
-                                            VoxelForm form, const Run& run);
+/// or the voxels' type is not what our own look at the file promises
+[[nodiscard]] ReceivedVolume receive_volume(ByteSource& received, const std::string& path,
+                                            const CheckedHeader& expected, VoxelForm form, const Run& run);
 
 }  // namespace isolux::detail

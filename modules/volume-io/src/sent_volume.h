@@ -17,7 +17,7 @@ using SendBytes = std::function<void(std::span<const std::byte>)>;
 struct SentVolume {
   Lattice lattice;
   ScalarType stored_type = ScalarType::kFloat32;
-  std::uint64_t blocks = 0;  ///< of values, each a SentBlock and its bytes
+  std::uint64_t blocks = 0;  ///< of values, each a SentBlock and its bytes; none where the parent reads them itself
 };
 static_assert(std::is_trivially_copyable_v<SentVolume>, "it goes through a pipe between two copies of one program");
 

@@ -11,12 +11,9 @@ namespace isolux::test {
 
 inline const ReadOptions kSpaced{.raw = {}, .spacing = Vec3(0.5, 2, 4), .allow_external_data = false};
 
-/// Files for ITK; skipped where isolux is built without it.
-class Itk : public ::testing::Test {
+/// Small files of one ramp, read and refused.
+class RampFile : public ::testing::Test {
  protected:
-  void SetUp() override {  // NOLINT(readability-identifier-naming): GoogleTest's name
-    if (!has_reader("itk")) GTEST_SKIP() << "no ITK in this build";
-  }
   /// The ramp 0, 1, ... 11 on 3x2x2 voxels.
   static void expect_ramp(const Volume& volume, float first = 0.0f) {
     ASSERT_EQ(volume.lattice().size, Index3(3, 2, 2));
@@ -30,6 +27,14 @@ class Itk : public ::testing::Test {
     return message;
   }
   TemporaryFolder folder_;
+};
+
+/// Files for ITK; skipped where isolux is built without it.
+class Itk : public RampFile {
+ protected:
+  void SetUp() override {  // NOLINT(readability-identifier-naming): GoogleTest's name
+    if (!has_reader("itk")) GTEST_SKIP() << "no ITK in this build";
+  }
 };
 
 }  // namespace isolux::test

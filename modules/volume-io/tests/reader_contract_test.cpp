@@ -27,10 +27,10 @@ std::vector<Sample> samples() {
            "NRRD0004\ntype: short\ndimension: 3\nsizes: 3 2 2\nendian: little\nencoding: raw\n\n" + data,
            {}},
           {"mrc", "a.mrc", test::mrc_sample(), {}},
-          {"itk", "a.nii", test::nifti_sample(), {}},
-          {"itk", "a.nii.gz", test::gzipped(test::nifti_sample()), {}},
+          {"nifti", "a.nii", test::nifti_sample(), {}},
+          {"nifti", "a.nii.gz", test::gzipped(test::nifti_sample()), {}},
           {"itk", "a.mha", test::meta_header("LOCAL") + data, {}},
-          {"itk", "a.vtk", test::vtk_header("BINARY") + data, {}},
+          {"vtk", "a.vtk", test::vtk_header("BINARY") + data, {}},
           {"itk", "a.tif", test::tiff_sample(0), spaced},
           {"itk", "a.dcm", test::dicom_sample({}), {}}};
 }

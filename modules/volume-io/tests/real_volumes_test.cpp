@@ -32,11 +32,11 @@ const std::vector<Known> kKnown = {
     {"stent.nrrd", "nrrd", {128, 128, 256}, ScalarType::kInt16, {1, 1, 1}, 0, 2000},
     {"fetal_t2.nrrd", "nrrd", {117, 159, 126}, ScalarType::kFloat32, {0.86, 0.86, 0.86}, 0, 711},
     {"brain1_anisotropic.nrrd", "nrrd", {256, 256, 25}, ScalarType::kInt16, {0.78, 0.78, 6.5}, 0, 3057},
-    {"ct_pitch.nii.gz", "itk", {175, 248, 58}, ScalarType::kUint8, {0.81, 0.81, 2.4}, 0, 255},
+    {"ct_pitch.nii.gz", "nifti", {175, 248, 58}, ScalarType::kUint8, {0.81, 0.81, 2.4}, 0, 255},
     {"emd3197.map", "mrc", {20, 20, 20}, ScalarType::kFloat32, {11.4, 11.4, 11.4}, -4.1f, 5.6f},
     {"emd3001_permuted_axes.map", "mrc", {43, 25, 73}, ScalarType::kFloat32, {0.45, 0.39, 0.46}, -0.37f, 0.72f},
-    {"ironprot.vtk", "itk", {68, 68, 68}, ScalarType::kUint8, {1, 1, 1}, 0, 255},
-    {"carotid_big_endian.vtk", "itk", {76, 49, 45}, ScalarType::kFloat32, {1, 1, 1}, 0, 580},
+    {"ironprot.vtk", "vtk", {68, 68, 68}, ScalarType::kUint8, {1, 1, 1}, 0, 255},
+    {"carotid_big_endian.vtk", "vtk", {76, 49, 45}, ScalarType::kFloat32, {1, 1, 1}, 0, 580},
 };
 
 std::string data_folder() {

@@ -3,7 +3,6 @@
 #include "../format_checks.h"
 #include "../itk_request.h"
 #include "../make_volume.h"
-#include "../named_link.h"
 #include "../received_volume.h"
 
 #include <dlfcn.h>
@@ -28,31 +27,35 @@ constexpr std::string_view kPlain = "3D-right-handed";
 /// What to read, by our own look at it.
 struct Plan {
   detail::ItkRequest request;
+  detail::CheckedHeader checked;
   std::string_view space;
 };
 
 Plan tiff_plan(const std::string& source, const std::vector<std::string>& files, const ReadOptions& options) {
   if (!options.spacing)
     throw InvalidInput(fmt::format("{}: TIFF does not say how far voxels are apart: give --spacing", source));
-  const Index3 first = detail::check_tiff(files.front()).size;
-  Index3 size = first;
+  const detail::CheckedHeader first = detail::check_tiff(files.front());
+  detail::CheckedHeader all = first;
   for (std::size_t i = 1; i < files.size(); ++i) {
-    const Index3 page = detail::check_tiff(files[i]).size;
-    if (page != first || page.z != 1)
-      throw InvalidInput(fmt::format("{}: {} has {}x{} pixels on {} pages, {} has {}x{} on {}", source, files[i],
-                                     page.x, page.y, page.z, files.front(), first.x, first.y, first.z));
-    ++size.z;
+    const detail::CheckedHeader page = detail::check_tiff(files[i]);
+    if (page.size != first.size || page.size.z != 1 || page.type != first.type)
+      throw InvalidInput(fmt::format("{}: {} has {}x{} {} pixels on {} pages, {} has {}x{} {} on {}", source, files[i],
+                                     page.size.x, page.size.y, scalar_type_name(*page.type), page.size.z, files.front(),
+                                     first.size.x, first.size.y, scalar_type_name(*first.type), first.size.z));
+    ++all.size.z;
   }
-  return {{.format = ItkFormat::kTiff, .source = source, .files = files, .size = size, .gap = {}}, kPlain};
+  return {{.format = ItkFormat::kTiff, .source = source, .files = files, .size = all.size, .gap = {}}, all, kPlain};
 }
 
 Plan dicom_plan(const std::string& source, const std::vector<std::string>& files, const ReadOptions& options) {
-  Index3 size(0);
-  for (const auto& file : files) size = detail::check_dicom(file).size;
-  size.z = int(files.size());
+  detail::CheckedHeader checked;
+  for (const auto& file : files) checked = detail::check_dicom(file);
+  checked.size.z = int(files.size());
   std::optional<double> gap;
   if (options.spacing) gap = options.spacing->z;
-  return {{.format = ItkFormat::kDicom, .source = source, .files = files, .size = size, .gap = gap}, kAnatomical};
+  return {{.format = ItkFormat::kDicom, .source = source, .files = files, .size = checked.size, .gap = gap},
+          checked,
+          kAnatomical};
 }
 
 Plan folder_plan(const std::string& source, const ReadOptions& options) {
@@ -68,11 +71,9 @@ struct Known {
   bool (*is)(const std::string&);
   std::array<std::string_view, 2> extensions;
 };
-constexpr std::array<Known, 5> kKnown = {{{ItkFormat::kDicom, detail::is_dicom, {".dcm", ".dcm"}},
+constexpr std::array<Known, 3> kKnown = {{{ItkFormat::kDicom, detail::is_dicom, {".dcm", ".dcm"}},
                                           {ItkFormat::kTiff, detail::is_tiff, {".tif", ".tiff"}},
-                                          {ItkFormat::kLegacyVtk, detail::is_legacy_vtk, {".vtk", ".vtk"}},
-                                          {ItkFormat::kMetaImage, detail::is_meta_image, {".mha", ".mhd"}},
-                                          {ItkFormat::kNifti, detail::is_nifti, {".nii", ".nii.gz"}}}};
+                                          {ItkFormat::kMetaImage, detail::is_meta_image, {".mha", ".mhd"}}}};
 
 const Known* known_by_content(const std::string& source) {
   const auto* const found = std::find_if(kKnown.begin(), kKnown.end(), [&](const Known& k) { return k.is(source); });
@@ -91,23 +92,20 @@ Plan plan(const std::string& source, const ReadOptions& options) {
   (void)detail::require_file(source);
   const Known* known = known_by_content(source);
   if (known == nullptr) known = known_by_name(source);
-  const ItkFormat format = known == nullptr ? ItkFormat::kNifti : known->format;
-  const auto one_file = [&](Index3 size, std::string_view space) {
-    return Plan{{.format = format, .source = source, .files = {source}, .size = size, .gap = {}}, space};
-  };
-  switch (format) {
+  if (known == nullptr)
+    throw InvalidInput(fmt::format("{}: none of the formats read with ITK: MetaImage, TIFF, DICOM", source));
+  switch (known->format) {
     case ItkFormat::kDicom:
       return dicom_plan(source, {source}, options);
     case ItkFormat::kTiff:
       return tiff_plan(source, {source}, options);
-    case ItkFormat::kLegacyVtk:
-      return one_file(detail::check_legacy_vtk(source).size, kPlain);
     case ItkFormat::kMetaImage:
-      return one_file(detail::check_meta_image(source, options).size, kAnatomical);
-    case ItkFormat::kNifti:
       break;
   }
-  return one_file(detail::check_nifti(source).size, kAnatomical);
+  detail::CheckedHeader checked = detail::check_meta_image(source, options);
+  return {{.format = known->format, .source = source, .files = {source}, .size = checked.size, .gap = {}},
+          std::move(checked),
+          kAnatomical};
 }
 
 /// In the child. ITK's libraries take 25 ms and 20 MB to be there, so that only who reads with them loads them. The
@@ -120,7 +118,7 @@ ItkEntry* load_itk(const std::string& source) {
   return reinterpret_cast<ItkEntry*>(entry);
 }
 
-/// NIfTI, MetaImage, legacy VTK, TIFF and DICOM through ITK, in a child process and behind our own checks. Immutable,
+/// MetaImage, TIFF and DICOM through ITK, in a child process and behind our own checks. Immutable,
 /// callable from many threads.
 class ItkReader final : public VolumeReader {
  public:
@@ -145,17 +143,18 @@ class ItkReader final : public VolumeReader {
 
   [[nodiscard]] StoredVolume read(const std::string& source, const ReadOptions& options,
                                   const Run& run) const override {
-    Plan what = plan(source, options);
-    std::optional<detail::NamedLink> named;
-    if (what.request.format == ItkFormat::kNifti && !detail::has_extension(source, detail::nifti_extension(source)))
-      what.request.files = {named.emplace(source, detail::nifti_extension(source)).path()};
+    const Plan what = plan(source, options);
     const auto limit = std::chrono::seconds(std::int64_t(std::ceil(options_.time_limit)));
     detail::ReceivedVolume volume;
     detail::run_in_child(
         source, limit, run, [&](const SendBytes& send) { load_itk(source)(what.request, send); },
         [&](detail::ByteSource& received) {
-          volume = detail::receive_volume(received, source, what.request.size, options.form, run);
+          volume = detail::receive_volume(received, source, what.checked, options.form, run);
         });
+    if (what.checked.data) {
+      volume.values = detail::read_values(*what.checked.data, volume.header.lattice.count(), options.form, run);
+      volume.header.stored_type = detail::voxel_type(*what.checked.data);
+    }
     return detail::make_volume(source, volume.header.lattice, std::move(volume.values), volume.header.stored_type,
                                std::string(what.space), options);
   }
@@ -177,7 +176,7 @@ class ItkReader final : public VolumeReader {
 
 namespace backends {
 void itk(Registry<VolumeReader>& registry) {
-  registry.add<ItkReader>("itk", "NIfTI, MetaImage, legacy VTK, TIFF stacks and DICOM series, in a child process");
+  registry.add<ItkReader>("itk", "MetaImage, TIFF stacks and DICOM series, in a child process");
 }
 }  // namespace backends
 

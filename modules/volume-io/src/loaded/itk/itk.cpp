@@ -7,11 +7,10 @@
 #include <itkGDCMImageIO.h>
 #include <itkMetaImageIO.h>
 #include <itkMultiThreaderBase.h>
-#include <itkNiftiImageIO.h>
 #include <itkTIFFImageIO.h>
-#include <itkVTKImageIO.h>
 
 #include <algorithm>
+#include <regex>
 #include <set>
 
 namespace isolux::detail {
@@ -55,24 +54,26 @@ ScalarType scalar_type(const std::string& path, const itk::ImageIOBase& io) {
   }
 }
 
-/// `path` may be another name of `file`, the one that messages give.
-template <class Io>
-typename Io::Pointer open(const std::string& file, const std::string& path) {
-  const auto io = Io::New();
-  io->SetFileName(path);
-  try {
-    io->ReadImageInformation();
-  } catch (const itk::ExceptionObject& problem) {
-    throw IoError(fmt::format("{}: ITK cannot read it: {}", file, problem.GetDescription()));
-  }
-  if (io->GetNumberOfComponents() != 1)
-    throw InvalidInput(fmt::format("{}: {} numbers a voxel: a volume has one", file, io->GetNumberOfComponents()));
-  return io;
+// ITK's own words, without what it says first: its name, and an object's address, which is another one each time.
+std::string words_of(const itk::ExceptionObject& problem) {
+  static const std::regex prefix(R"(^(ITK ERROR: )?(\w+\(0x[0-9a-f]+\): )?)");
+  std::string words = std::regex_replace(problem.GetDescription(), prefix, "");
+  std::replace(words.begin(), words.end(), '\n', ' ');
+  return words;
 }
 
 template <class Io>
 typename Io::Pointer open(const std::string& file) {
-  return open<Io>(file, file);
+  const auto io = Io::New();
+  io->SetFileName(file);
+  try {
+    io->ReadImageInformation();
+  } catch (const itk::ExceptionObject& problem) {
+    throw IoError(fmt::format("{}: ITK cannot read it: {}", file, words_of(problem)));
+  }
+  if (io->GetNumberOfComponents() != 1)
+    throw InvalidInput(fmt::format("{}: {} numbers a voxel: a volume has one", file, io->GetNumberOfComponents()));
+  return io;
 }
 
 Lattice lattice_of(const std::string& path, const itk::ImageIOBase& io) {
@@ -103,17 +104,15 @@ void send_pixels(const std::string& path, itk::ImageIOBase& io, const SendBytes&
   try {
     io.Read(pixels.data());
   } catch (const itk::ExceptionObject& problem) {
-    throw IoError(fmt::format("{}: ITK cannot read it: {}", path, problem.GetDescription()));
+    throw IoError(fmt::format("{}: ITK cannot read it: {}", path, words_of(problem)));
   }
   send_block(send, scalar_type(path, io), pixels);
 }
 
-template <class Io>
-void send_file(const ItkRequest& request, const SendBytes& send) {
-  const std::string& file = request.source;
-  const auto io = open<Io>(file, request.files.front());
-  send_value(send, SentVolume{.lattice = lattice_of(file, *io), .stored_type = scalar_type(file, *io), .blocks = 1});
-  send_pixels(file, *io, send);
+// The parent reads the values itself.
+void send_lattice(const std::string& file, const SendBytes& send) {
+  const auto io = open<itk::MetaImageIO>(file);
+  send_value(send, SentVolume{.lattice = lattice_of(file, *io), .stored_type = scalar_type(file, *io), .blocks = 0});
 }
 
 std::vector<Slice> dicom_slices(const std::string& source, const std::vector<std::string>& files) {
@@ -155,12 +154,8 @@ void send_tiffs(const std::vector<std::string>& files, Index3 size, const SendBy
 extern "C" void isolux_itk_send(const ItkRequest& request, const SendBytes& send) {
   itk::MultiThreaderBase::SetGlobalDefaultNumberOfThreads(1);
   switch (request.format) {
-    case ItkFormat::kNifti:
-      return send_file<itk::NiftiImageIO>(request, send);
     case ItkFormat::kMetaImage:
-      return send_file<itk::MetaImageIO>(request, send);
-    case ItkFormat::kLegacyVtk:
-      return send_file<itk::VTKImageIO>(request, send);
+      return send_lattice(request.source, send);
     case ItkFormat::kTiff:
       return send_tiffs(request.files, request.size, send);
     case ItkFormat::kDicom:

@@ -1,0 +1,174 @@
+#include "legacy_vtk.h"
+
+#include "files.h"
+#include "format_checks.h"
+#include "nrrd_text.h"
+#include "number_text.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <isolux/core/error.h>
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <map>
+#include <optional>
+
+namespace isolux::detail {
+namespace {
+
+constexpr std::string_view kMagic = "# vtk DataFile Version";
+constexpr std::size_t kLongestVtkHeader = 1 << 14;
+
+class VtkHeader {
+ public:
+  explicit VtkHeader(const std::string& path) : path_(path), bytes_(first_bytes(path, kLongestVtkHeader)) {}
+
+  /// The next line, as words.
+  std::vector<std::string> any_line() {
+    const std::size_t newline = bytes_.find('\n', end_);
+    if (newline == std::string::npos) throw IoError(fmt::format("{}: the VTK header ends early", path_));
+    auto words = nrrd_words(std::string_view(bytes_).substr(end_, newline - end_));
+    end_ = newline + 1;
+    return words;
+  }
+  /// The next line that is not blank.
+  std::vector<std::string> line() {
+    for (;;) {
+      if (auto words = any_line(); !words.empty()) return words;
+    }
+  }
+  [[nodiscard]] std::size_t end() const { return end_; }
+
+  [[nodiscard]] double number(const std::vector<std::string>& words, std::size_t index) const {
+    double value = 0.0;
+    const std::string word = index < words.size() ? words[index] : "";
+    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
+    if (error != std::errc() || end != word.data() + word.size())
+      throw InvalidInput(fmt::format("{}: VTK '{}': '{}' is not a number", path_, words.front(), word));
+    return value;
+  }
+  [[nodiscard]] std::array<double, 3> triple(const std::vector<std::string>& words) const {
+    if (words.size() != 4) throw InvalidInput(fmt::format("{}: VTK '{}' needs three numbers", path_, words.front()));
+    return {number(words, 1), number(words, 2), number(words, 3)};
+  }
+  [[nodiscard]] std::array<std::int64_t, 3> sizes(const std::vector<std::string>& words) const {
+    const auto numbers = triple(words);
+    if (!std::all_of(words.begin() + 1, words.end(), [](const auto& w) { return reads_as(ScalarType::kInt64, w); }))
+      throw InvalidInput(fmt::format("{}: VTK '{}': three whole numbers are needed", path_, fmt::join(words, " ")));
+    return {std::int64_t(numbers[0]), std::int64_t(numbers[1]), std::int64_t(numbers[2])};
+  }
+
+ private:
+  std::string path_;
+  std::string bytes_;
+  std::size_t end_ = 0;
+};
+
+ScalarType scalar_type(const std::string& path, const std::string& type) {
+  static const std::map<std::string, ScalarType> types = {
+      {"char", ScalarType::kInt8},          {"unsigned_char", ScalarType::kUint8},
+      {"short", ScalarType::kInt16},        {"unsigned_short", ScalarType::kUint16},
+      {"int", ScalarType::kInt32},          {"unsigned_int", ScalarType::kUint32},
+      {"float", ScalarType::kFloat32},      {"double", ScalarType::kFloat64},
+      {"long", ScalarType::kInt64},         {"unsigned_long", ScalarType::kUint64},
+      {"vtktypeint64", ScalarType::kInt64}, {"vtktypeuint64", ScalarType::kUint64}};
+  const auto it = types.find(type);
+  if (it == types.end())
+    throw InvalidInput(
+        fmt::format("{}: VTK scalars of type '{}': supported are (unsigned_)char, (unsigned_)short, "
+                    "(unsigned_)int, (unsigned_)long, float and double",
+                    path, type));
+  return it->second;
+}
+
+// The lines between DATASET and SCALARS, in any order; returns those of SCALARS.
+std::vector<std::string> read_lattice(const std::string& path, VtkHeader& header, Lattice& lattice) {
+  std::optional<std::array<std::int64_t, 3>> sizes;
+  std::optional<double> points;
+  auto words = header.line();
+  for (; words.front() != "SCALARS"; words = header.line()) {
+    if (words.front() == "DIMENSIONS") {
+      sizes = header.sizes(words);
+    } else if (words.front() == "SPACING" || words.front() == "ASPECT_RATIO") {
+      const auto spacing = header.triple(words);
+      require_spacing(path, spacing);
+      for (std::size_t a = 0; a < 3; ++a) lattice.frame.axes[int(a)][int(a)] = spacing.at(a);
+    } else if (words.front() == "ORIGIN") {
+      const auto origin = header.triple(words);
+      require_finite(path, "the origin", origin);
+      lattice.frame.origin = Vec3(origin[0], origin[1], origin[2]);
+    } else if (words.front() == "POINT_DATA") {
+      points = header.number(words, 1);
+    } else {
+      throw InvalidInput(
+          fmt::format("{}: VTK '{}' before SCALARS is not supported", path, words.front().substr(0, 40)));
+    }
+  }
+  if (!sizes) throw InvalidInput(fmt::format("{}: VTK has no DIMENSIONS", path));
+  const std::uint64_t count = checked_count(path, *sizes, 8);
+  if (!points) throw InvalidInput(fmt::format("{}: VTK SCALARS without POINT_DATA before them", path));
+  if (*points != double(count))
+    throw InvalidInput(fmt::format("{}: VTK POINT_DATA {}: DIMENSIONS make {}", path, *points, count));
+  lattice.size = {int((*sizes)[0]), int((*sizes)[1]), int((*sizes)[2])};
+  return words;
+}
+
+std::vector<float> read_text(const LegacyVtk& header, const Run& run) {
+  const std::uint64_t count = header.lattice.count();
+  const std::string& path = header.data.file;
+  NumberText text(path, header.data.offset, " \n\r\t\f\v");
+  std::vector<float> values;
+  values.reserve(count);
+  while (values.size() < count) {
+    const std::string& word = text.next();
+    if (word.empty())
+      throw IoError(fmt::format("{}: {} numbers of data expected, {} found", path, count, values.size()));
+    if (!reads_as(header.data.layout.type, word))
+      throw InvalidInput(fmt::format("{}: '{}', value {} of the data, is no finite {}", path, word.substr(0, 40),
+                                     values.size(), scalar_type_name(header.data.layout.type)));
+    values.push_back(float(text.number()));
+    if (values.size() % 65536 == 0) throw_if_stopped(run);
+  }
+  return values;
+}
+
+}  // namespace
+
+bool is_legacy_vtk(const std::string& path) { return first_bytes(path, kMagic.size()) == kMagic; }
+
+LegacyVtk read_legacy_vtk_header(const std::string& path) {
+  const std::uint64_t file_size = require_file(path);
+  if (!is_legacy_vtk(path)) throw InvalidInput(fmt::format("{}: no legacy VTK file: '{}' is missing", path, kMagic));
+  VtkHeader header(path);
+  (void)header.any_line();
+  (void)header.any_line();  // the title, which may be empty
+  const std::string encoding = header.line().front();
+  if (encoding != "BINARY" && encoding != "ASCII")
+    throw InvalidInput(fmt::format("{}: VTK encoding '{}': allowed are BINARY and ASCII", path, encoding));
+  const auto words = header.line();
+  if (words.size() != 2 || words[0] != "DATASET" || words[1] != "STRUCTURED_POINTS")
+    throw InvalidInput(fmt::format("{}: VTK '{}': supported is DATASET STRUCTURED_POINTS", path, words.back()));
+  LegacyVtk result;
+  result.text = encoding == "ASCII";
+  const auto scalars = read_lattice(path, header, result.lattice);
+  if (scalars.size() < 3 || scalars.size() > 4 || (scalars.size() == 4 && scalars[3] != "1"))
+    throw InvalidInput(fmt::format("{}: VTK SCALARS need a name, a type and one component", path));
+  if (header.line().front() != "LOOKUP_TABLE")
+    throw InvalidInput(fmt::format("{}: VTK SCALARS without a LOOKUP_TABLE line", path));
+  result.data = {
+      .file = path, .offset = header.end(), .more_allowed = true, .layout = {scalar_type(path, scalars[2]), true}};
+  const std::uint64_t count = result.lattice.count();
+  if (!result.text) require_room(result.data, count);
+  if (result.text && count > file_size)
+    throw IoError(fmt::format("{}: {} numbers of data expected in {} bytes", path, count, file_size));
+  return result;
+}
+
+AnyValues read_legacy_vtk_values(const LegacyVtk& header, VoxelForm form, const Run& run) {
+  if (header.text) return read_text(header, run);
+  return read_values(header.data, header.lattice.count(), form, run);
+}
+
+}  // namespace isolux::detail

@@ -1,0 +1,30 @@
+#pragma once
+
+#include "data_place.h"
+
+#include <isolux/core/lattice.h>
+
+#include <string>
+
+namespace isolux::detail {
+
+/// The header of a legacy VTK file of structured points whose first attribute is one-component scalars, understood and
+/// checked.
+struct LegacyVtk {
+  Lattice lattice;
+  DataPlace data;
+  bool text = false;  ///< the values are written as numbers with blanks between
+};
+
+/// Tells legacy VTK by its content.
+[[nodiscard]] bool is_legacy_vtk(const std::string& path);
+
+/// \throw IoError, InvalidInput naming the file, the value and what is allowed; also where the file cannot hold the
+/// values promised
+[[nodiscard]] LegacyVtk read_legacy_vtk_header(const std::string& path);
+
+/// Further attributes may follow the values: the format says so. \throw IoError, InvalidInput, Cancelled; of text also
+/// for what is no finite number of its type
+[[nodiscard]] AnyValues read_legacy_vtk_values(const LegacyVtk& header, VoxelForm form, const Run& run);
+
+}  // namespace isolux::detail

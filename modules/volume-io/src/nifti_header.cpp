@@ -1,0 +1,253 @@
+#include "nifti_header.h"
+
+#include "files.h"
+#include "format_checks.h"
+#include "header_bytes.h"
+
+#include <fmt/format.h>
+#include <isolux/core/error.h>
+
+#include <array>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <optional>
+
+namespace isolux::detail {
+namespace {
+
+constexpr std::size_t kHeader1 = 348;
+constexpr std::size_t kHeader2 = 540;
+// An sform from a registration stretches a little; one whose axes are this much longer or shorter than pixdim is
+// spoiled.
+constexpr double kMostStretch = 10.0;
+
+bool is_gzip(const std::string& path) { return first_bytes(path, 2) == "\x1F\x8B"; }
+
+// The first bytes of what the file holds, inflated if need be.
+std::string header_bytes(const std::string& path) {
+  if (!is_gzip(path)) return first_bytes(path, kHeader2);
+  std::string bytes(kHeader2, '\0');
+  bytes.resize(gzip_source(path, 0)->read(std::as_writable_bytes(std::span(bytes))));
+  return bytes;
+}
+
+struct Version {
+  bool second = false;
+  bool big_endian = false;
+};
+
+// By the header's own size at its start and the magic word.
+std::optional<Version> version(const std::string& bytes) {
+  for (const bool big_endian : {false, true}) {
+    if (bytes.size() < kHeader1) return std::nullopt;
+    const HeaderBytes header(bytes, big_endian);
+    const auto size = header.get<std::int32_t>(0);
+    if (size == int(kHeader1) && bytes.compare(344, 4, std::string("n+1\0", 4)) == 0) return Version{false, big_endian};
+    if (size == int(kHeader2) && bytes.size() >= kHeader2 && bytes.compare(4, 4, std::string("n+2\0", 4)) == 0)
+      return Version{true, big_endian};
+  }
+  return std::nullopt;
+}
+
+ScalarType scalar_type(const std::string& path, int datatype) {
+  switch (datatype) {
+    case 2:
+      return ScalarType::kUint8;
+    case 4:
+      return ScalarType::kInt16;
+    case 8:
+      return ScalarType::kInt32;
+    case 16:
+      return ScalarType::kFloat32;
+    case 64:
+      return ScalarType::kFloat64;
+    case 256:
+      return ScalarType::kInt8;
+    case 512:
+      return ScalarType::kUint16;
+    case 768:
+      return ScalarType::kUint32;
+    case 1024:
+      return ScalarType::kInt64;
+    case 1280:
+      return ScalarType::kUint64;
+    default:
+      throw InvalidInput(fmt::format(
+          "{}: NIfTI datatype {}: supported are 2, 4, 8, 16, 64, 256, 512, 768, 1024 and 1280, one number a voxel",
+          path, datatype));
+  }
+}
+
+// The fields that matter, of either version.
+struct Fields {
+  std::array<std::int64_t, 8> dim{};
+  int datatype = 0;
+  int bits = 0;
+  double offset = 0.0;
+  std::array<double, 4> pixdim{};  ///< the first is qfac
+  std::array<double, 2> scale{};
+  std::array<double, 12> sform{};
+  std::array<double, 6> qform{};  ///< quaternion b, c, d; offset
+  int qform_code = 0;
+  int sform_code = 0;
+  int units = 0;
+};
+
+Fields fields(const HeaderBytes& h, bool second) {
+  Fields f;
+  for (std::size_t i = 0; i < 8; ++i)
+    f.dim[i] = second ? h.get<std::int64_t>(16 + 8 * i) : std::int64_t(h.get<std::int16_t>(40 + 2 * i));
+  f.datatype = h.get<std::int16_t>(second ? 12 : 70);
+  f.bits = h.get<std::int16_t>(second ? 14 : 72);
+  f.offset = second ? double(h.get<std::int64_t>(168)) : double(h.get<float>(108));
+  const auto real = [&](std::size_t at1, std::size_t at2, std::size_t i) {
+    return second ? h.get<double>(at2 + 8 * i) : double(h.get<float>(at1 + 4 * i));
+  };
+  for (std::size_t i = 0; i < 4; ++i) f.pixdim[i] = real(76, 104, i);
+  for (std::size_t i = 0; i < 2; ++i) f.scale[i] = real(112, 176, i);
+  for (std::size_t i = 0; i < 6; ++i) f.qform[i] = real(256, 352, i);
+  for (std::size_t i = 0; i < 12; ++i) f.sform[i] = real(280, 400, i);
+  f.qform_code = second ? h.get<std::int32_t>(344) : h.get<std::int16_t>(252);
+  f.sform_code = second ? h.get<std::int32_t>(348) : h.get<std::int16_t>(254);
+  f.units = second ? h.get<std::int32_t>(500) : h.get<std::uint8_t>(123);
+  return f;
+}
+
+IndexToWorld sform_frame(const std::string& path, const Fields& f) {
+  require_finite(path, "the sform", f.sform);
+  IndexToWorld frame;
+  for (int a = 0; a < 3; ++a) {
+    const std::size_t column = std::size_t(a);
+    frame.axes[a] = Vec3(f.sform[column], f.sform[4 + column], f.sform[8 + column]);
+    const double stretch = glm::length(frame.axes[a]) / std::fabs(f.pixdim[column + 1]);
+    if (!(stretch > 1.0 / kMostStretch && stretch < kMostStretch))
+      throw InvalidInput(
+          fmt::format("{}: the sform's axis {} is {:.4g} long, pixdim says {:.4g}: they may differ by a "
+                      "factor of {} at most",
+                      path, a, glm::length(frame.axes[a]), f.pixdim[column + 1], kMostStretch));
+  }
+  frame.origin = Vec3(f.sform[3], f.sform[7], f.sform[11]);
+  return frame;
+}
+
+// The rotation by the unit quaternion a + ib + jc + kd, of which a >= 0 is left out (nifti1.h, method 2).
+IndexToWorld qform_frame(const std::string& path, const Fields& f) {
+  require_finite(path, "the qform", f.qform);
+  Vec3 v(f.qform[0], f.qform[1], f.qform[2]);
+  const double squares = glm::dot(v, v);
+  // Half a turn leaves no a; rounding may leave a little less than none.
+  if (squares > 1.0 + 1e-3)
+    throw InvalidInput(
+        fmt::format("{}: the qform's quaternion {} {} {}: the sum of squares may be 1 at most", path, v.x, v.y, v.z));
+  if (squares > 1.0) v /= std::sqrt(squares);
+  const double a = std::sqrt(std::max(0.0, 1.0 - squares));
+  const double aa = a * a;
+  const double b = v.x;
+  const double c = v.y;
+  const double d = v.z;
+  IndexToWorld frame;
+  frame.axes[0] = Vec3(aa + b * b - c * c - d * d, 2 * (b * c + a * d), 2 * (b * d - a * c));
+  frame.axes[1] = Vec3(2 * (b * c - a * d), aa + c * c - b * b - d * d, 2 * (c * d + a * b));
+  frame.axes[2] = Vec3(2 * (b * d + a * c), 2 * (c * d - a * b), aa + d * d - c * c - b * b);
+  for (int i = 0; i < 3; ++i) frame.axes[i] *= std::fabs(f.pixdim[std::size_t(i) + 1]);
+  if (f.pixdim[0] < 0.0) frame.axes[2] = -frame.axes[2];
+  frame.origin = Vec3(f.qform[3], f.qform[4], f.qform[5]);
+  return frame;
+}
+
+double millimetres(const std::string& path, int units) {
+  switch (units & 7) {
+    case 0:  // unknown
+    case 2:
+      return 1.0;
+    case 1:
+      return 1e3;
+    case 3:
+      return 1e-3;
+    default:
+      throw InvalidInput(
+          fmt::format("{}: NIfTI xyzt_units {}: allowed lengths are 0 (unknown), 1 (metre), 2 "
+                      "(millimetre) and 3 (micrometre)",
+                      path, units));
+  }
+}
+
+IndexToWorld frame_of(const std::string& path, const Fields& f) {
+  require_spacing(path, std::span(f.pixdim).subspan(1));
+  IndexToWorld frame;
+  if (f.sform_code == 1 || (f.sform_code > 0 && f.qform_code <= 0)) {
+    frame = sform_frame(path, f);
+  } else if (f.qform_code > 0) {
+    frame = qform_frame(path, f);
+  } else {
+    for (int a = 0; a < 3; ++a) frame.axes[a][a] = std::fabs(f.pixdim[std::size_t(a) + 1]);
+  }
+  const bool anatomical = f.sform_code > 0 || f.qform_code > 0;
+  // RAS to LPS; adding 0 leaves no -0, which would be shown and hashed as another number.
+  const Vec3 turned = (anatomical ? Vec3(-1, -1, 1) : Vec3(1)) * millimetres(path, f.units);
+  for (int a = 0; a < 3; ++a) frame.axes[a] = frame.axes[a] * turned + Vec3(0);
+  frame.origin = frame.origin * turned + Vec3(0);
+  return frame;
+}
+
+std::array<std::int64_t, 3> sizes_of(const std::string& path, const Fields& f) {
+  if (f.dim[0] < 1 || f.dim[0] > 7)
+    throw InvalidInput(fmt::format("{}: NIfTI dim[0] is {}: allowed is 1 to 7", path, f.dim[0]));
+  std::array<std::int64_t, 3> sizes{1, 1, 1};
+  for (std::int64_t i = 1; i <= f.dim[0]; ++i) {
+    const std::int64_t size = f.dim.at(std::size_t(i));
+    if (i <= 3) sizes.at(std::size_t(i) - 1) = size;
+    if (i > 3 && size > 1)
+      throw InvalidInput(
+          fmt::format("{}: {} samples on axis {}: a volume has 3 axes, one number a voxel", path, size, i));
+  }
+  return sizes;
+}
+
+std::uint64_t data_offset(const std::string& path, const Fields& f, bool second) {
+  const double first = second ? 544.0 : 352.0;
+  if (!(f.offset >= first && f.offset < 0x1p53 && std::floor(f.offset) == f.offset))
+    throw InvalidInput(
+        fmt::format("{}: NIfTI vox_offset is {}: a whole number of at least {} is needed", path, f.offset, first));
+  return std::uint64_t(f.offset);
+}
+
+}  // namespace
+
+bool is_nifti(const std::string& path) {
+  try {
+    return version(header_bytes(path)).has_value();
+  } catch (const Error&) {
+    return false;
+  }
+}
+
+NiftiHeader read_nifti_header(const std::string& path) {
+  (void)require_file(path);
+  const std::string bytes = header_bytes(path);
+  const auto found = version(bytes);
+  if (!found)
+    throw InvalidInput(
+        fmt::format("{}: no NIfTI file: supported are single files of version 1 ('n+1') and 2 ('n+2')", path));
+  const Fields f = fields(HeaderBytes(bytes, found->big_endian), found->second);
+  const auto sizes = sizes_of(path, f);
+  const ScalarType type = scalar_type(path, f.datatype);
+  const std::size_t width = bytes_per_scalar(type);
+  if (f.bits != int(8 * width))
+    throw InvalidInput(fmt::format("{}: NIfTI bitpix is {}, datatype {} has {}", path, f.bits, f.datatype, 8 * width));
+  NiftiHeader header;
+  header.lattice.frame = frame_of(path, f);
+  header.data = {.file = path, .compressed = is_gzip(path), .more_allowed = true, .layout = {type, found->big_endian}};
+  (header.data.compressed ? header.data.skipped : header.data.offset) = data_offset(path, f, found->second);
+  require_finite(path, "the intensity scaling", f.scale);
+  // A slope of 0 says that there is no scaling, whatever the intercept.
+  if (f.scale[0] != 0.0) {
+    header.data.slope = f.scale[0];
+    header.data.intercept = f.scale[1];
+  }
+  require_room(header.data, checked_count(path, sizes, width));
+  header.lattice.size = {int(sizes[0]), int(sizes[1]), int(sizes[2])};
+  return header;
+}
+
+}  // namespace isolux::detail

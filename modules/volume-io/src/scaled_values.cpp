@@ -1,0 +1,80 @@
+#include "scaled_values.h"
+
+#include <fmt/format.h>
+#include <isolux/core/error.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+namespace isolux::detail {
+namespace {
+
+constexpr std::size_t kPiece = 1 << 16;
+
+template <class T>
+double number_of(const std::byte* bytes) {
+  T number;
+  std::memcpy(&number, bytes, sizeof(T));
+  return double(number);
+}
+
+auto number_reader(ScalarType type) {
+  switch (type) {
+    case ScalarType::kInt8:
+      return number_of<std::int8_t>;
+    case ScalarType::kUint8:
+      return number_of<std::uint8_t>;
+    case ScalarType::kInt16:
+      return number_of<std::int16_t>;
+    case ScalarType::kUint16:
+      return number_of<std::uint16_t>;
+    case ScalarType::kInt32:
+      return number_of<std::int32_t>;
+    case ScalarType::kUint32:
+      return number_of<std::uint32_t>;
+    case ScalarType::kInt64:
+      return number_of<std::int64_t>;
+    case ScalarType::kUint64:
+      return number_of<std::uint64_t>;
+    case ScalarType::kFloat32:
+      return number_of<float>;
+    case ScalarType::kFloat64:
+      return number_of<double>;
+  }
+  throw InvalidInput("unknown scalar type");
+}
+
+}  // namespace
+
+std::vector<float> decode_scaled(ByteSource& source, const ScalarLayout& layout, std::uint64_t count, double slope,
+                                 double intercept, const std::string& path, const Run& run) {
+  const std::size_t width = bytes_per_scalar(layout.type);
+  const auto number = number_reader(layout.type);
+  std::vector<float> values;
+  values.reserve(count);
+  std::vector<std::byte> piece(std::min<std::uint64_t>(count, kPiece) * width);
+  while (values.size() < count) {
+    throw_if_stopped(run);
+    const std::size_t wanted = std::min<std::uint64_t>(kPiece, count - values.size());
+    const std::span<std::byte> bytes = std::span(piece).first(wanted * width);
+    if (const std::size_t got = source.read(bytes); got < bytes.size())
+      throw IoError(fmt::format("{}: the data are too short: {} bytes expected, {} found", path, count * width,
+                                values.size() * width + got));
+    for (std::size_t i = 0; i < bytes.size(); i += width) {
+      if (layout.big_endian) std::reverse(&bytes[i], &bytes[i] + width);
+      const double stored = number(&bytes[i]);
+      const double scaled = slope * stored + intercept;
+      if (!fits_float(scaled) || std::isfinite(scaled) != std::isfinite(stored))
+        throw InvalidInput(
+            fmt::format("{}: {}, value {} of the data, is {:.5g} in the header's scaling, {} * x + {}: "
+                        "beyond what float32 holds, in which volumes are kept",
+                        path, stored, values.size(), scaled, slope, intercept));
+      values.push_back(float(scaled));
+    }
+    if (run.progress) run.progress("read", double(values.size()) / double(count));
+  }
+  return values;
+}
+
+}  // namespace isolux::detail

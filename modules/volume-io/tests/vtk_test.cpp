@@ -1,0 +1,93 @@
+#include "itk_fixture.h"
+
+#include <gmock/gmock.h>
+
+namespace isolux {
+namespace {
+using ::testing::HasSubstr;
+
+class LegacyVtk : public test::RampFile {};
+
+TEST_F(LegacyVtk, IsReadAsTextAndBinary) {
+  std::string text;
+  for (int i = 0; i < 12; ++i) text += fmt::format("{} ", i);
+  for (const auto& path : {folder_.write("a.vtk", test::vtk_header("BINARY") + test::bytes_of(test::ramp(), true)),
+                           folder_.write("b.vtk", test::vtk_header("ASCII") + text)}) {
+    const Volume volume = read_volume(path);
+    expect_ramp(volume);
+    EXPECT_EQ(volume.lattice().frame.spacing(), Vec3(0.5, 2, 4));
+    EXPECT_EQ(volume.lattice().frame.origin, Vec3(10, 20, 30));
+    EXPECT_EQ(volume.space, "3D-right-handed");
+  }
+}
+
+// Names and titles may be words of the format, and lines of the geometry stand in any order.
+TEST_F(LegacyVtk, IsReadWhateverItsNamesAndOrder) {
+  const auto edited = [&](const std::string& from, const std::string& to) {
+    std::string bytes = test::vtk_header("BINARY") + test::bytes_of(test::ramp(), true);
+    bytes.replace(bytes.find(from), from.size(), to);
+    return folder_.write("a.vtk", bytes);
+  };
+  for (const std::string name : {"color_scalars", "vectors", "tensors", "float", "lookup_table"}) {
+    const Volume volume = read_volume(edited("SCALARS s", "SCALARS " + name));
+    expect_ramp(volume);
+    EXPECT_EQ(volume.stored_type, ScalarType::kInt16) << name;
+  }
+  for (const std::string title : {"", "ASCII", "DIMENSIONS 9 9 9"}) expect_ramp(read_volume(edited("title", title)));
+  const Volume volume = read_volume(edited("DIMENSIONS 3 2 2\nSPACING 0.5 2 4\nORIGIN 10 20 30\nPOINT_DATA 12\n",
+                                           "ORIGIN 10 20 30\nPOINT_DATA 12\nSPACING 0.5 2 4\nDIMENSIONS 3 2 2\n"));
+  expect_ramp(volume);
+  EXPECT_EQ(volume.lattice().frame.spacing(), Vec3(0.5, 2, 4));
+  EXPECT_EQ(volume.lattice().frame.origin, Vec3(10, 20, 30));
+}
+
+TEST_F(LegacyVtk, IsRefusedWhereItIsHostile) {
+  const std::string data = test::bytes_of(test::ramp(), true);
+  const auto edited = [&](const std::string& from, const std::string& to) {
+    std::string bytes = test::vtk_header("BINARY") + data;
+    bytes.replace(bytes.find(from), from.size(), to);
+    return refused("a.vtk", bytes);
+  };
+  EXPECT_THAT(refused("a.vtk", test::vtk_header("BINARY") + data.substr(2)),
+              HasSubstr("24 bytes of data expected, 22 found"));
+  EXPECT_THAT(refused("a.vtk", test::vtk_header("ASCII") + "1 2 3"), HasSubstr("12 numbers of data expected, 3 found"));
+  EXPECT_THAT(edited("3 2 2", "3 2 0"), HasSubstr("allowed is 1 to"));
+  EXPECT_THAT(edited("3 2 2", "2147483647 2147483647 2147483647"), HasSubstr("63 bits"));
+  EXPECT_THAT(edited("0.5 2 4", "0 2 4"), HasSubstr("other than 0"));
+  EXPECT_THAT(edited("10 20 30", "10 inf 30"), HasSubstr("finite numbers"));
+  EXPECT_THAT(edited("POINT_DATA 12", "POINT_DATA 13"), HasSubstr("DIMENSIONS make 12"));
+  EXPECT_THAT(edited("s short 1", "s short 3"), HasSubstr("one component"));
+  EXPECT_THAT(edited("s short 1", "s bit 1"), HasSubstr("supported are"));
+  EXPECT_THAT(edited("STRUCTURED_POINTS", "POLYDATA"), HasSubstr("supported is DATASET STRUCTURED_POINTS"));
+  EXPECT_THAT(edited("3 2 2", "3.7 2 2"), HasSubstr("three whole numbers are needed"));
+  EXPECT_THAT(edited("3 2 2", "3e0 2 2"), HasSubstr("three whole numbers are needed"));
+  EXPECT_THAT(edited("DIMENSIONS 3 2 2\n", ""), HasSubstr("no DIMENSIONS"));
+  EXPECT_THAT(edited("POINT_DATA 12\n", ""), HasSubstr("without POINT_DATA"));
+  EXPECT_THAT(edited("BINARY", "PACKED"), HasSubstr("allowed are BINARY and ASCII"));
+}
+
+TEST_F(LegacyVtk, IsRefusedWhereItsTextIsNoNumberOfItsType) {
+  const auto with = [&](const std::string& type, const std::string& word) {
+    std::string bytes = test::vtk_header("ASCII");
+    bytes.replace(bytes.find("s short 1"), 9, "s " + type + " 1");
+    return bytes + "0 1 2 " + word + " 4 5 6 7 8 9 10 11";
+  };
+  const auto expect_refused = [&](const std::string& type, const std::vector<std::string>& words, const char* name) {
+    for (const std::string& word : words)
+      EXPECT_THAT(refused("a.vtk", with(type, word)),
+                  HasSubstr("'" + word + "', value 3 of the data, is no finite " + name));
+  };
+  expect_refused("float", {"abc", "1,5", "0x10", "1e39", "1e999", "nan", "+-3", "++3", "--3"}, "float32");
+  expect_refused("double", {"1e999", "nan", "inf", "-inf"}, "float64");
+  expect_refused("short", {"3.0", "3e2", "70000", "-32769", "++3", "+-3"}, "int16");
+  expect_refused("unsigned_char", {"1.5", "300", "-1", "3."}, "uint8");
+  expect_refused("long", {"9223372036854775808", "1e3"}, "int64");
+  expect_ramp(read_volume(folder_.write("a.vtk", with("short", "3"))));
+  expect_ramp(read_volume(folder_.write("a.vtk", with("int", "+3"))));
+  expect_ramp(read_volume(folder_.write("a.vtk", with("unsigned_char", "3"))));
+  expect_ramp(read_volume(folder_.write("a.vtk", with("double", "+3.0e0"))));
+  EXPECT_EQ(read_volume(folder_.write("a.vtk", with("double", "1e-400"))).values.values()[3], 0.0f);
+}
+
+}  // namespace
+}  // namespace isolux
