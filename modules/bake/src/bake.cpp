@@ -18,6 +18,7 @@
 #include "reading_error.h"
 #include "resampling_choice.h"
 #include "sites_by_need.h"
+#include "texel_judge.h"
 
 namespace isolux {
 namespace {
@@ -44,6 +45,7 @@ BakeResult bake_paths(const Volume& volume, const Scene& scene, const BakeSettin
   result.counters = traced.counters;
   result.least_rays = result.most_rays = std::uint32_t(settings.trace.rays);
   finish_bake(volume, std::move(traced.samples), *resampler, texels, settings, run, result);
+  if (!are_sites_own(*resampler, settings)) judge_texels(volume, scene, settings, run, result);
   return result;
 }
 
@@ -72,12 +74,13 @@ BakeResult bake_side(const Volume& volume, const Scene& scene, const BakeSetting
 /// Whether reflections have to be followed by paths to reach the error asked.
 bool wants_paths(const BakeSettings& settings, const BakeResult& iterated) {
   return settings.bounce_method == BounceMethod::kIteratedOrPaths && settings.target_rmse > 0.0 &&
-         iterated.counters.rays <= kMostRaysOnceMore && !reading_allows(settings.target_rmse, iterated.reading_error);
+         iterated.rmse_estimate > settings.target_rmse && iterated.counters.rays <= kMostRaysOnceMore &&
+         !reading_allows(settings.target_rmse, iterated.reading_error);
 }
 
 /// By what to multiply the rays of a bake so that their noise is what an error allows; 0 where it is.
 double more_rays_for(double target_rmse, const BakeResult& seen) {
-  const double noise = seen.rmse_estimate * seen.rmse_estimate - seen.reading_error * seen.reading_error;
+  const double noise = seen.noise * seen.noise;
   const double allowed = squared_noise_for(target_rmse, seen.reading_error);
   return noise > allowed ? kMargin * noise / allowed : 0.0;
 }

@@ -48,7 +48,7 @@ class PartBaker {
     }
     count_sites(volume_, all_, settings_, result_);
     result_.least_rays = result_.most_rays = std::uint32_t(settings_.trace.rays);
-    result_.rmse_estimate = error_.root();
+    result_.rmse_estimate = result_.noise = error_.root();
     const Stopwatch watch;
     if (settings_.wants_error_grid) result_.error = fill_unlit(told_by_bytes(std::move(errors_)), run_);
     finish_light(volume_, last_, told_by_bytes(std::move(light_)), *resampler_, settings_, run_, result_);

@@ -14,6 +14,7 @@
 
 #include "resampling_choice.h"
 #include "standard_error.h"
+#include "texel_judge.h"
 
 namespace isolux {
 namespace {
@@ -141,14 +142,18 @@ void finish_light(const Volume& volume, const SampleSet& samples, ResampledGrid 
 
 void finish_bake(const Volume& volume, SampleSet samples, const Resampler& resampler, const Lattice& texels,
                  const BakeSettings& settings, const Run& run, BakeResult& result) {
-  const double noise = standard_error(samples.variance);
-  result.rmse_estimate = std::hypot(noise, result.reading_error);
+  result.noise = standard_error(samples.variance);
+  result.rmse_estimate = std::hypot(result.noise, result.reading_error);
   const Stopwatch watch;
   finish_light(volume, samples, resampler.resample(volume, samples, texels, run), resampler, settings, run, result);
   if (settings.wants_error_grid) {
     // Reading is wrong where rays hit, which is also where their number varies.
-    const double scale = noise > 0.0 ? result.rmse_estimate / noise : 1.0;
-    result.error = fill_unlit(resampler.resample(volume, standard_errors(std::move(samples), scale), texels, run), run);
+    const double scale = result.noise > 0.0 ? result.rmse_estimate / result.noise : 1.0;
+    const SampleSet errors = standard_errors(std::move(samples), scale);
+    // Of other texels it is the mean error around: what is fitted may well be below 0.
+    result.error = are_sites_own(resampler, settings)
+                       ? fill_unlit(resampler.resample(volume, errors, texels, run), run)
+                       : fill_unlit(resamplers().create("cell_grid")->resample(volume, errors, texels, run), run);
   }
   result.seconds["resample"] = watch.seconds();
 }

@@ -22,6 +22,7 @@ BakeResult both_sides(BakeResult outer, BakeResult inner) {
   outer.sweeps += inner.sweeps;
   outer.unlit_texels += inner.unlit_texels;
   outer.rmse_estimate = std::hypot(outer.rmse_estimate, inner.rmse_estimate) * std::sqrt(0.5);
+  outer.noise = std::hypot(outer.noise, inner.noise) * std::sqrt(0.5);
   outer.reading_error = std::hypot(outer.reading_error, inner.reading_error) * std::sqrt(0.5);
   outer.least_rays = std::min(outer.least_rays, inner.least_rays);
   outer.most_rays = std::max(outer.most_rays, inner.most_rays);

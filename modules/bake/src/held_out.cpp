@@ -10,9 +10,22 @@
 namespace isolux {
 namespace {
 
-/// Enough for the error to some 5 %, if there are so many.
-constexpr std::size_t kMostHeldOut = 6144;
 constexpr std::size_t kTexelsAHeldOut = 8;
+/// A place held out by so many rays of a bake.
+constexpr std::size_t kRaysAPlace = 16384;
+/// As many at least, if there are so many sites; paths of fewer cannot tell a bias from noise.
+constexpr std::size_t kFewestPlaces = 1024;
+constexpr std::size_t kMostPlaces = 4096;
+/// From this albedo on paths may be long, hundreds of rays in closed spaces: a quarter of both places and rays has to
+/// do.
+constexpr float kLasting = 0.95f;
+
+int share_by_length(const Scene& scene) {
+  const bool last = std::any_of(scene.albedo.keys.begin(), scene.albedo.keys.end(), [](const auto& key) {
+    return std::max({key.colour.x, key.colour.y, key.colour.z}) > kLasting;
+  });
+  return last ? 4 : 1;
+}
 
 }  // namespace
 
@@ -58,7 +71,22 @@ std::vector<std::size_t> one_of_each_share(std::size_t count, std::size_t shares
   return numbers;
 }
 
-std::vector<std::size_t> held_out_texels(const Lattice& texels, const TexelSiteMaker& sites, const Run& run) {
+std::size_t places_to_judge_by(std::size_t sites, const Scene& scene, const BakeSettings& settings) {
+  const std::size_t rays = sites * std::size_t(std::max(settings.trace.rays, 1));
+  const std::size_t by_rays = settings.target_rmse > 0.0 ? kMostPlaces : rays / kRaysAPlace;
+  return std::clamp(by_rays, kFewestPlaces, kMostPlaces) / std::size_t(share_by_length(scene));
+}
+
+TraceSettings paths_to_judge_by(const Scene& scene, const BakeSettings& settings) {
+  TraceSettings judged = settings.trace;
+  judged.nets = RayNets::kIndependent;
+  judged.lamps = LampLight::kWithin;
+  judged.rays = (settings.target_rmse > 0.0 && settings.target_rmse < 0.012 ? 128 : 64) / share_by_length(scene);
+  return judged;
+}
+
+std::vector<std::size_t> held_out_texels(const Lattice& texels, const TexelSiteMaker& sites, std::size_t most,
+                                         const Run& run) {
   const std::size_t count = texels.count();
   const auto from_shares = [&](std::size_t shares) {
     std::vector<std::size_t> drawn = one_of_each_share(count, shares, run);
@@ -70,10 +98,10 @@ std::vector<std::size_t> held_out_texels(const Lattice& texels, const TexelSiteM
     drawn.resize(kept);
     return drawn;
   };
-  const std::size_t first = std::min(kMostHeldOut, count);
+  const std::size_t first = std::min(most, count);
   std::vector<std::size_t> drawn = from_shares(first);
   const double can_be_lit = double(drawn.size()) / double(first);
-  const double wanted = std::min(double(kMostHeldOut), std::ceil(can_be_lit * double(count) / double(kTexelsAHeldOut)));
+  const double wanted = std::min(double(most), std::ceil(can_be_lit * double(count) / double(kTexelsAHeldOut)));
   if (can_be_lit > 0.0) return from_shares(std::min(count, std::size_t(std::ceil(wanted / can_be_lit))));
   return drawn;
 }

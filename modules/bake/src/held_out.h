@@ -1,5 +1,6 @@
 #pragma once
 
+#include <isolux/bake/bake.h>
 #include <isolux/core/run.h>
 #include <isolux/raytrace_flat/flat_tracer.h>
 
@@ -36,10 +37,15 @@ class HeldOut {
   TraceCounters counters_;
 };
 
-/// Texels to hold out, drawn at random, all that can be lit being equally likely: at most 6,144, or one of eight.
+/// Texels to hold out, drawn at random, all that can be lit being equally likely: at most so many, or one of eight.
 /// \throw Cancelled
 [[nodiscard]] std::vector<std::size_t> held_out_texels(const Lattice& texels, const TexelSiteMaker& sites,
-                                                       const Run& run);
+                                                       std::size_t most, const Run& run);
+
+/// To judge a bake of `sites` sites: by how many places, its paths being then some twentieth of the time, and by what
+/// paths.
+[[nodiscard]] std::size_t places_to_judge_by(std::size_t sites, const Scene& scene, const BakeSettings& settings);
+[[nodiscard]] TraceSettings paths_to_judge_by(const Scene& scene, const BakeSettings& settings);
 
 /// One number of each of `shares` equal shares of those below `count`. \pre shares <= count
 [[nodiscard]] std::vector<std::size_t> one_of_each_share(std::size_t count, std::size_t shares, const Run& run);

@@ -19,6 +19,7 @@
 #include "reading_error.h"
 #include "resampling_choice.h"
 #include "standard_error.h"
+#include "texel_judge.h"
 #include "texel_places.h"
 
 namespace isolux {
@@ -167,6 +168,7 @@ BakeResult KeptRays::last_light(const Scene& scene, const Run& run) && {
   samples.sites = std::move(*links_).take_sites();
   finish_links();
   finish_bake(volume_, std::move(samples), *resampler_, texels_, settings_, run, result);
+  if (!are_sites_own(*resampler_, settings_)) judge_texels(volume_, scene, settings_, run, result);
   return result;
 }
 
@@ -182,7 +184,8 @@ BakeResult KeptRays::light_without_places(const Scene& scene, const TexelPlaces&
   links_->let_places_go();
   SampleSet samples = trace_and_solve(scene, run, result);
   finish_links();
-  result.rmse_estimate = std::hypot(standard_error(samples.variance), result.reading_error);
+  result.noise = standard_error(samples.variance);
+  result.rmse_estimate = std::hypot(result.noise, result.reading_error);
   const Stopwatch watch;
   IlluminationGrid grid = unlit_grid(texels_, samples.channels);
   const auto channels = std::size_t(samples.channels);

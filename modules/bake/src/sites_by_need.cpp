@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "bake_parts.h"
+#include "texel_judge.h"
 
 namespace isolux {
 namespace {
@@ -181,6 +182,7 @@ BakeResult bake_scattered_by_need(const Volume& volume, const Scene& scene, cons
   add(result.counters, more.counters);
   result.least_rays = result.most_rays = std::uint32_t(settings.trace.rays);
   finish_bake(volume, traced.samples, *resampler, texels, settings, run, result);
+  if (!are_sites_own(*resampler, settings)) judge_texels(volume, scene, settings, run, result);
   return result;
 }
 

@@ -4,6 +4,11 @@
 #include <isolux/core/stopwatch.h>
 #include <isolux/volume_io/read.h>
 
+#include <cmath>
+#include <functional>
+#include <vector>
+
+#include "grid_index.h"
 #include "rms_difference.h"
 
 namespace isolux::test {
@@ -42,6 +47,56 @@ TEST(Target, EndsIterationWhereReadingIsWrongAlready) {
   const BakeResult result = bake(volume, scene, settings, builtin_stages(), {});
   EXPECT_GT(result.reading_error, 0.004);
   EXPECT_LT(result.most_rays, 1u << 14);
+}
+
+struct Making {
+  const char* name;
+  std::function<void(BakeSettings&)> choose;
+};
+
+// Whatever makes texels of sites: noise averages out over many of them, and few leave gaps.
+TEST(Target, IsWhatTexelsAreWrongBy) {
+  const Volume volume = read_volume("gen:gyroid:16");
+  const std::vector<Making> ways = {{"fit", [](BakeSettings& s) { s.resampler.name = "fit"; }},
+                                    {"fit by need",
+                                     [](BakeSettings& s) {
+                                       s.resampler.name = "fit";
+                                       s.texel_sites = TexelSites::kNeeded;
+                                     }},
+                                    {"many samples", [](BakeSettings& s) { s.samples = 30000; }},
+                                    {"few samples", [](BakeSettings& s) { s.samples = 1500; }},
+                                    {"denoised", [](BakeSettings& s) {
+                                       s.resampler.settings = {{"denoise", "true"}};
+                                     }}};
+  for (const Making& way : ways) {
+    BakeSettings settings;
+    settings.trace = {.rays = 16, .bounces = 0};
+    settings.wants_error_grid = true;
+    way.choose(settings);
+    const BakeResult result = bake(volume, {}, settings, builtin_stages(), {});
+    BakeSettings exact;
+    exact.trace = {.rays = 1024, .bounces = 0};
+    exact.texels = result.light.lattice.size;
+    const IlluminationGrid truth = bake(volume, {}, exact, builtin_stages(), {.seed = 9}).light;
+    const LightReader reader(volume, result.light);
+    const IndexToWorld to_volume = index_to_index(truth.lattice, volume.lattice());
+    double squares = 0.0;
+    for (std::size_t t = 0; t < truth.values.size(); ++t) {
+      const Vec3 at = to_volume.world(Vec3(index_of(truth.lattice.size, t)));
+      squares += std::pow(double(reader.at_index(at).x) - double(truth.values[t]), 2.0);
+    }
+    const double error = std::sqrt(squares / double(truth.values.size()));
+    EXPECT_LT(error, 1.25 * result.rmse_estimate) << way.name;
+    EXPECT_GT(error, result.rmse_estimate / 1.25) << way.name;
+    ASSERT_TRUE(result.error) << way.name;
+    ASSERT_EQ(result.error->values.size(), truth.values.size()) << way.name;
+    double stated = 0.0;
+    for (const float e : result.error->values) {
+      EXPECT_GE(e, 0.0f) << way.name;
+      stated += double(e) * double(e) / double(truth.values.size());
+    }
+    EXPECT_NEAR(std::sqrt(stated), result.rmse_estimate, 0.1 * result.rmse_estimate) << way.name;
+  }
 }
 
 TEST(Target, EndsInTime) {

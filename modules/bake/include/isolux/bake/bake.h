@@ -93,9 +93,10 @@ struct BakeResult {
   std::size_t sites = 0;
   int sweeps = 0;                ///< of BounceMethod::kIterated
   std::size_t unlit_texels = 0;  ///< filled from their lit neighbours
-  /// Root mean squared error of e over the sites: the standard error of their rays and reading_error together, or the
-  /// error at texels held out (TexelSites::kNeeded); NaN if one ray a site says nothing of it.
+  /// Root mean squared error of e at the texels: where they are the sites, noise and reading_error together; else, and
+  /// with TexelSites::kNeeded, that of texels which are lit by paths besides; NaN if one ray a site says nothing of it.
   double rmse_estimate = 0.0;
+  double noise = 0.0;  ///< standard error of the sites' rays, rms; 0 with TexelSites::kNeeded
   /// What reading reflections from texels adds to that (kIterated; rms, 0 where it is lost in the noise): no ray takes
   /// it away, more texels or kPaths do.
   double reading_error = 0.0;

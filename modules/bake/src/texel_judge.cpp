@@ -1,0 +1,70 @@
+#include "texel_judge.h"
+
+#include <isolux/core/stopwatch.h>
+#include <isolux/resample/light_reader.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <utility>
+#include <vector>
+
+#include "held_out.h"
+
+namespace isolux {
+namespace {
+
+/// e as it is read where the texels are.
+std::vector<float> read_at(const Volume& volume, const Sites& sites, const IlluminationGrid& light, const Run& run) {
+  const LightReader reader(volume, light, TexelStorage::kDense, run);
+  const auto channels = std::size_t(light.channels);
+  std::vector<float> found(sites.size() * channels);
+  for (std::size_t i = 0; i < sites.size(); ++i) {
+    const Vec3f e = reader.at_index(Vec3(sites.positions[i]), double(sites.isovalues[i]));
+    for (std::size_t c = 0; c < channels; ++c) found[i * channels + c] = e[int(c)];
+  }
+  return found;
+}
+
+/// To where the root of the texels' mean square is `rms`.
+void scale_errors(double rms, IlluminationGrid& errors) {
+  double squares = 0.0;
+  std::size_t count = 0;
+  for (const float error : errors.values) {
+    squares += double(error) * double(error);
+    count += error > 0.0f ? 1 : 0;
+  }
+  if (count == 0) return;
+  const auto by = float(rms / std::sqrt(squares / double(count)));
+  for (float& error : errors.values) error *= by;
+}
+
+}  // namespace
+
+bool are_sites_own(const Resampler& resampler, const BakeSettings& settings) {
+  return settings.sampler.name == "texels" && resampler.takes_parts();
+}
+
+void judge_texels(const Volume& volume, const Scene& scene, const BakeSettings& settings, const Run& run,
+                  BakeResult& result) {
+  const Stopwatch watch;
+  const Lattice& texels = result.light.lattice;
+  const TexelSiteMaker maker(
+      volume,
+      {.texels = texels, .isovalues = settings.isovalues, .outer = scene.outer, .gradient = settings.trace.gradient},
+      run);
+  const std::size_t most = places_to_judge_by(result.sites, scene, settings);
+  const Sites sites = maker.make(held_out_texels(texels, maker, most, run));
+  if (sites.size() == 0) return;
+  std::vector<std::size_t> numbers(sites.size());
+  std::iota(numbers.begin(), numbers.end(), std::size_t(0));
+  const HeldOut held_out(volume, scene, sites, std::move(numbers), paths_to_judge_by(scene, settings), run);
+  const HeldOut::SquaredError squared = held_out.squared_error(read_at(volume, sites, result.light, run));
+  // Few texels can agree by chance.
+  result.rmse_estimate = std::sqrt(std::max(squared.mean, squared.standard_error));
+  if (result.error) scale_errors(result.rmse_estimate, *result.error);
+  add(result.counters, held_out.counters());
+  result.seconds["trace"] += watch.seconds();
+}
+
+}  // namespace isolux
