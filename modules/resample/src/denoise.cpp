@@ -79,8 +79,10 @@ class Denoiser {
       for (std::size_t s = 0; s < order_.size(); ++s) all_.places[a][s] = all_.look(s)[a];
     }
     if (are_on_a_lattice()) all_.stencil = wide::Stencil::of(all_.bins, kWindows.back());
+    const float brightest = *std::max_element(radiance.begin(), radiance.end());
+    if (brightest > 0.0f) unit_ = std::ldexp(1.0f, -std::max(std::ilogb(brightest), -120));
     look(volume);
-    const double unseen = kUnseen * double(*std::max_element(radiance.begin(), radiance.end()));
+    const double unseen = kUnseen * double(brightest * unit_);
     limits_.unseen = float(unseen * unseen);
   }
 
@@ -94,7 +96,7 @@ class Denoiser {
       for (std::size_t c = 0; c < channels_; ++c) {
         double e = shares.back() * double(radiance(s)[c]);
         for (std::size_t w = 0; w < kWindows.size(); ++w) e += shares[w] * double(smooth(w, s)[c]);
-        values[order_[s] * channels_ + c] = std::max(0.0f, float(e));
+        values[order_[s] * channels_ + c] = std::max(0.0f, float(e / double(unit_)));
       }
     });
     return values;
@@ -131,8 +133,10 @@ class Denoiser {
         float* const look = all_.look(s);
         const Vec3f& normal = sites_.normals[order_[s]];
         for (int a = 0; a < 3; ++a) look[wide::BinnedSamples::kNormal + std::size_t(a)] = normal[a];
-        look[wide::BinnedSamples::kVariance] = variance_[order_[s]];
-        std::copy_n(&radiance_[order_[s] * channels_], channels_, look + wide::BinnedSamples::kLight);
+        look[wide::BinnedSamples::kVariance] = variance_[order_[s]] * unit_ * unit_;
+        const float* const light = &radiance_[order_[s] * channels_];
+        std::transform(light, light + channels_, look + wide::BinnedSamples::kLight,
+                       [&](float e) { return e * unit_; });
       }
     });
   }
@@ -257,6 +261,7 @@ class Denoiser {
   std::size_t channels_;
   const Run& run_;
   wide::DenoiseKernels kernels_;
+  float unit_ = 1.0f;                 ///< a power of two times which the brightest light is some 1 to 2
   std::vector<std::uint32_t> order_;  ///< of the given samples; all that follows is in the order of bins
   wide::BinnedSamples all_;
   std::vector<Findings> findings_;

@@ -211,6 +211,19 @@ TEST(Direct, DenoisesLampsThatAreNoisyToo) {
   EXPECT_EQ(denoised_texels(volume, samples), denoised_texels(volume, noisy_step(volume, 0.2)));
 }
 
+TEST(Direct, DenoisesDimLightAsItDoesBrightLight) {
+  const Volume volume = ramp_volume({13, 13, 13});
+  const std::vector<float> usual = denoised_texels(volume, noisy_step(volume, 0.2));
+  for (const int power : {-40, -20, 20}) {
+    SampleSet samples = noisy_step(volume, 0.2);
+    for (float& e : samples.radiance) e = std::ldexp(e, power);
+    for (float& v : samples.variance) v = std::ldexp(v, 2 * power);
+    std::vector<float> scaled = denoised_texels(volume, samples);
+    for (float& e : scaled) e = std::ldexp(e, -power);
+    EXPECT_EQ(scaled, usual) << power;
+  }
+}
+
 TEST(Direct, DenoisesToTheSameBitsForAnyNumberOfThreads) {
   const Volume volume = ramp_volume({13, 13, 13});
   const SampleSet samples = beside_a_lamp(noisy_step(volume, 0.2));
