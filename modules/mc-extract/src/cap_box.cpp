@@ -1,6 +1,9 @@
 #include "cap_box.h"
 
+#include <fmt/format.h>
+#include <isolux/core/error.h>
 #include <isolux/mc_extract/accurate_normals.h>
+#include <isolux/mc_extract/vertex_resolution.h>
 
 #include <algorithm>
 #include <array>
@@ -223,6 +226,17 @@ class BoxCap {
 }  // namespace
 
 void cap_box(IndexedMesh& mesh, const VolumeView& volume, const LevelSet& level_set) {
+  // Which side of a square a vertex lies on is read from its position.
+  constexpr double kLeast = 64.0;
+  const Vec3 resolution = vertex_resolution(volume.lattice());
+  const double steps = 1.0 / std::max({resolution.x, resolution.y, resolution.z});
+  if (!(steps >= kLeast)) {
+    const Vec3& origin = volume.lattice().frame.origin;
+    throw InvalidInput(fmt::format(
+        "{}: so far out as its origin ({}, {}, {}) a mesh's float coordinates tell {:.2g} places a voxel apart; a cap "
+        "needs {}: move the origin nearer to 0",
+        volume.name(), origin.x, origin.y, origin.z, steps, kLeast));
+  }
   BoxCap(mesh, volume, level_set).add();
 }
 

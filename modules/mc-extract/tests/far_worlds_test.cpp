@@ -1,5 +1,6 @@
 // Worlds whose origin is so far away that floats resolve them coarsely: what stays whole and how far vertices give way.
 #include <gtest/gtest.h>
+#include <isolux/core/error.h>
 #include <isolux/mc_extract.h>
 
 #include <algorithm>
@@ -108,6 +109,14 @@ TEST_P(FarExtractor, CapsAtTheBox) {
       ASSERT_EQ(zero_area_triangles(closed), 0) << seed << ' ' << frame;
     }
   }
+}
+
+// As UTM coordinates in metres have it.
+TEST_P(FarExtractor, RefusesACapThatFloatsDoNotTell) {
+  const Volume volume = placed(noise(Index3(12), 3), {.origin = Vec3(5e5, 4.5e6, 0.0), .axes = Mat3(1.0)});
+  const auto extractor = extractors().create(GetParam());
+  EXPECT_NO_THROW((void)extractor->extract(volume, {.isovalue = 0.5f}, {}));
+  EXPECT_THROW((void)extractor->extract(volume, {.isovalue = 0.5f, .cap = CapKind::kBox}, {}), InvalidInput);
 }
 
 TEST_P(FarExtractor, MovesVerticesOnlyAlongTheAxisThatIsCoarse) {
