@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <set>
 
 namespace isolux {
 
@@ -71,6 +72,26 @@ float JsonObject::positive(const char* key) const {
                                    value.dump(), double(std::numeric_limits<float>::max())));
   }
   return number;
+}
+
+nlohmann::json parse_json(const std::string& text, const std::string& name) {
+  using nlohmann::json;
+  std::vector<std::set<std::string>> objects;
+  const auto look = [&](int /*depth*/, json::parse_event_t event, json& parsed) {
+    if (event == json::parse_event_t::object_start) objects.emplace_back();
+    if (event == json::parse_event_t::object_end) objects.pop_back();
+    if (event == json::parse_event_t::key && !objects.back().insert(parsed.get<std::string>()).second)
+      throw InvalidInput(fmt::format("{}: the key {} is given twice", name, parsed.dump()));
+    return true;
+  };
+  try {
+    return json::parse(text, look);
+  } catch (const json::parse_error& error) {
+    throw InvalidInput(fmt::format("{}: not JSON at byte {}", name, error.byte));
+  } catch (const json::out_of_range&) {
+    throw InvalidInput(fmt::format("{}: a number is too large: at most {:.2g} is allowed", name,
+                                   double(std::numeric_limits<float>::max())));
+  }
 }
 
 std::vector<double> json_doubles(const nlohmann::json& json, std::size_t count, const std::string& place) {

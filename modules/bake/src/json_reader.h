@@ -49,6 +49,10 @@ class JsonObject {
   std::string place_;
 };
 
+/// A text as JSON. \throw InvalidInput naming `name` for what is none, a number beyond doubles, or a key given twice,
+/// of which the library would take the last
+[[nodiscard]] nlohmann::json parse_json(const std::string& text, const std::string& name);
+
 /// The numbers of an array of `count`, each within a float's range. \throw InvalidInput naming `place`
 [[nodiscard]] std::vector<double> json_doubles(const nlohmann::json& json, std::size_t count, const std::string& place);
 /// The same, rounded to floats.

@@ -26,7 +26,7 @@ std::optional<Scene> scene_of(const LightFile& light) {
   if (it == light.metadata.end()) return std::nullopt;
   // An image environment is described, not repeated: what shading needs is the albedo and the outer side.
   auto json = nlohmann::json::parse(it->second, nullptr, false);
-  if (json.is_discarded() || !json.is_object()) throw InvalidInput("the light's isolux.scene is not a JSON object");
+  if (json.is_discarded() || !json.is_object()) throw InvalidInput("isolux.scene of the light: not a JSON object");
   json.erase("environment");
   return parse_scene(json.dump(), "", "isolux.scene of the light");
 }

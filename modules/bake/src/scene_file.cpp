@@ -38,7 +38,10 @@ Environment read_environment(const json& value, const std::string& folder, const
   }
   if (type == "image") {
     object.require_keys({"type", "file", "up"});
-    ImageEnvironment image = read_environment_image((std::filesystem::path(folder) / object.text("file")).string());
+    const std::string file = object.text("file");
+    if (file.empty() || file.find('\0') != std::string::npos)
+      throw InvalidInput(fmt::format("{}: {} is no file's name", object.place("file"), object.at("file").dump()));
+    ImageEnvironment image = read_environment_image((std::filesystem::path(folder) / file).string());
     image.up = object.direction_or("up", image.up);
     return image;
   }
@@ -64,7 +67,7 @@ Light read_light(const json& value, const std::string& place) {
                                    .u = object.direction("u"),
                                    .v = object.direction("v"),
                                    .radiance = object.colour("radiance")};
-    if (glm::length(glm::cross(rectangle.u, rectangle.v)) <= 0.0f)
+    if (glm::length(glm::cross(Vec3(rectangle.u), Vec3(rectangle.v))) <= 0.0)
       throw InvalidInput(fmt::format("{}: u and v are parallel; they must span an area", object.place()));
     return rectangle;
   }
@@ -163,14 +166,7 @@ json colour_to_json(const IsovalueColour& colour) {
 }  // namespace
 
 Scene parse_scene(const std::string& text, const std::string& folder, const std::string& name) {
-  json root;
-  try {
-    root = json::parse(text);
-  } catch (const json::parse_error& error) {
-    throw InvalidInput(fmt::format("{}: not JSON at byte {}", name, error.byte));
-  } catch (const json::out_of_range& error) {
-    throw InvalidInput(fmt::format("{}: a number is too large: {}", name, error.what()));
-  }
+  const json root = parse_json(text, name);
   const JsonObject object(root, name);
   object.require_keys({"environment", "lights", "albedo", "emission", "outer", "sides"});
   Scene scene;

@@ -149,7 +149,8 @@ void append_samples(SampleSet& all, const SampleSet& more) {
 
 BakeResult bake_scattered_by_need(const Volume& volume, const Scene& scene, const BakeSettings& settings,
                                   const Stages& stages, const Run& run) {
-  if (has_target(settings)) throw InvalidInput("sites by need: a number of rays is allowed, not an error or a time");
+  if (has_target(settings))
+    throw InvalidInput("scattered sites by need: a number of rays is allowed, not an error or a time");
   if (iterates(settings) && settings.trace.bounces != 0)
     throw InvalidInput("scattered sites by need: reflections are followed by paths, not iterated");
   const auto resampler = stages.resamplers.create(settings.resampler.name, settings.resampler.settings);
