@@ -37,6 +37,7 @@ void report_bake(const BakeResult& result, Session& session) {
   report["sweeps"] = result.sweeps;
   report["unlit_texels"] = result.unlit_texels;
   report["rmse_estimate"] = result.rmse_estimate;
+  report["noise"] = result.noise;
   report["reading_error"] = result.reading_error;
   for (std::size_t i = 0; i < result.sides.size(); ++i) {
     const SideFigures& side = result.sides[i];
@@ -67,7 +68,9 @@ void say_what_was_done(const BakeResult& result, const Session& session) {
 void say_of_error(const BakeResult& result, double asked, const Session& session) {
   if (!(asked > 0.0 && result.rmse_estimate > kNear * asked)) return;
   std::string why;
-  if (result.reading_error > 0.0)
+  if (result.noise <= kNear * asked && result.noise > 0.0 && result.settings.sampler.name != "texels")
+    why = "; that is no noise of the rays: more --samples, or the default's one site at each texel, take it away";
+  else if (result.reading_error > 0.0)
     why = fmt::format(
         "; reading reflections from texels makes {:.4f} of it, which more texels or --bounce-method paths "
         "take away",
