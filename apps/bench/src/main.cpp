@@ -33,9 +33,9 @@ struct Arguments {
   std::string fault;
 };
 
-/// Exit status of a finished parse, or -1 to go on. \throw UsageError, IoError
-int parse(int argc, char** argv, Arguments& arguments, Session& session) {
-  CLI::App app{"Run time against error of every stage; writes JSON, CSV, pictures and report.md", "isolux bench"};
+/// Exit status of a finished parse, or -1 to go on. The session asks for the options of `app` later, too. \throw
+/// UsageError, IoError
+int parse(int argc, char** argv, CLI::App& app, Arguments& arguments, Session& session) {
   std::vector<std::string> known;
   std::string footer = "Suites (default: all):\n";
   for (const Suite& suite : suites()) {
@@ -56,7 +56,9 @@ int parse(int argc, char** argv, Arguments& arguments, Session& session) {
       ->check(CLI::IsMember(ills));
   session.add_common_options(app);
   app.remove_option(app.get_option("--threads"));  // here 0 is a number too
-  app.add_option("--threads", session.run.threads, "threads, 0 for all")->check(CLI::Range(0, 4096))->type_name("T");
+  app.add_option("--threads", session.run.threads, "threads, 0 for all")
+      ->transform(whole_number(0, 4096))
+      ->type_name("T");
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& help) {
@@ -130,8 +132,9 @@ int run_suites(const Arguments& arguments, Session& session) {
 
 int main(int argc, char** argv) {
   return run_program("bench", [&](Session& session, std::string& /*what*/) {
+    CLI::App app{"Run time against error of every stage; writes JSON, CSV, pictures and report.md", "isolux bench"};
     Arguments arguments;
-    int status = parse(argc, argv, arguments, session);
+    int status = parse(argc, argv, app, arguments, session);
     if (status >= 0) return status;
     session.on_run([&] { status = run_suites(arguments, session); });
     session.run_action();

@@ -1,5 +1,6 @@
 #include "stats.h"
 
+#include <fmt/format.h>
 #include <isolux/core/random.h>
 #include <isolux/core/stopwatch.h>
 
@@ -7,7 +8,6 @@
 #include <array>
 #include <cassert>
 #include <cmath>
-#include <limits>
 
 namespace isolux::bench {
 
@@ -89,10 +89,12 @@ PowerLaw fit_power_law(std::span<const double> x, std::span<const double> y) {
     }
     law.exponent_error = std::sqrt(residual / (n - 2.0) / xx);
     law.exponent_bar = student_95(x.size() - 2) * law.exponent_error;
-  } else {
-    law.exponent_bar = std::numeric_limits<double>::infinity();
   }
   return law;
+}
+
+std::string bar_text(const PowerLaw& law) {
+  return std::isnan(law.exponent_bar) ? std::string() : fmt::format("{:.2f}", law.exponent_bar);
 }
 
 PowerLaw fit_power_law(std::span<const PlotPoint> points) {

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <functional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "figures.h"
@@ -31,11 +32,13 @@ struct PowerLaw {
   double factor = 0.0;
   double exponent = 0.0;
   double exponent_error = 0.0;  ///< standard error of the exponent; 0 for two points
-  double exponent_bar = 0.0;    ///< half the 95 % interval of the exponent by Student's t; infinite for two points
+  double exponent_bar = kNone;  ///< half the 95 % interval of the exponent by Student's t; none for two points
 };
 /// Least squares in logarithms. \pre at least two points, all positive
 [[nodiscard]] PowerLaw fit_power_law(std::span<const double> x, std::span<const double> y);
 [[nodiscard]] PowerLaw fit_power_law(std::span<const PlotPoint> points);
+/// exponent_bar for a table; empty if there is none.
+[[nodiscard]] std::string bar_text(const PowerLaw& law);
 
 /// Seconds of `body`, repeated until `repetitions` are done or `budget_seconds` are spent, at least once: median and
 /// quartiles.

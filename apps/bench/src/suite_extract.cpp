@@ -135,9 +135,8 @@ void accuracy(const SuiteContext& context, SuiteReport& report) {
       }
       const PowerLaw distance = fit_power_law(ns, distances);
       const PowerLaw area = fit_power_law(ns, areas);
-      rates.rows.push_back({shape.name, info.name, fmt::format("n^{:.2f}", distance.exponent),
-                            fmt::format("{:.2f}", distance.exponent_bar), fmt::format("n^{:.2f}", area.exponent),
-                            fmt::format("{:.2f}", area.exponent_bar)});
+      rates.rows.push_back({shape.name, info.name, fmt::format("n^{:.2f}", distance.exponent), bar_text(distance),
+                            fmt::format("n^{:.2f}", area.exponent), bar_text(area)});
       plot.series.push_back(std::move(series));
     }
   }

@@ -150,7 +150,7 @@ Plot error_over_samples(const Bench& bench, double seconds, Table& rates) {
     if (series.points.size() < 3) continue;
     const PowerLaw law = fit_power_law(series.points);
     rates.rows.push_back({test.title, series.name, double(series.points.size()),
-                          fmt::format("samples^{:.2f}", law.exponent), fmt::format("{:.2f}", law.exponent_bar)});
+                          fmt::format("samples^{:.2f}", law.exponent), bar_text(law)});
   }
   return plot;
 }

@@ -20,7 +20,7 @@ struct Rates {
     if (series.points.size() < 3) return;
     const PowerLaw law = fit_power_law(series.points);
     table.rows.push_back({scene, series.name, double(series.points.size()),
-                          fmt::format("{}^{:.2f}", what, law.exponent), fmt::format("{:.2f}", law.exponent_bar)});
+                          fmt::format("{}^{:.2f}", what, law.exponent), bar_text(law)});
   }
 };
 

@@ -9,6 +9,14 @@
 namespace isolux::bench {
 namespace {
 
+TEST(PowerLaw, HasNoBarForTwoPoints) {
+  const std::vector<double> x{1.0, 2.0};
+  const std::vector<double> y{4.0, 1.0};
+  const PowerLaw law = fit_power_law(x, y);
+  EXPECT_DOUBLE_EQ(law.exponent, -2.0);
+  EXPECT_EQ(bar_text(law), "");
+}
+
 TEST(Quantile, IsLinearBetweenOrderStatistics) {
   const std::vector<double> values{4, 1, 3, 2};
   EXPECT_DOUBLE_EQ(quantile(values, 0.0), 1.0);
