@@ -6,7 +6,7 @@ function(isolux_find_package name result)
   set(CMAKE_FIND_PACKAGE_TARGETS_GLOBAL ON)  # a module's package is linked by programs of other folders
   set(targets "")
   if(name STREQUAL "ITK")
-    find_package(ITK QUIET COMPONENTS ITKCommon ITKIOImageBase ITKIONIFTI ITKIOMeta ITKIOVTK ITKIOTIFF ITKIOGDCM ITKIONRRD)
+    find_package(ITK QUIET COMPONENTS ITKCommon ITKIOImageBase ITKIOMeta ITKIOTIFF ITKIOGDCM ITKIONRRD)
     if(ITK_FOUND)
       if(NOT TARGET isolux_itk)
         # ITK registers its readers through a generated header; including its use file at directory scope would force it on
