@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <utility>
 
 namespace isolux {
@@ -44,6 +45,19 @@ void require_finite(const std::string& name, const Index3& size, std::span<const
   const auto ny = std::size_t(size.y);
   throw InvalidInput(fmt::format("{}: {} of {} voxels are not finite numbers, the first ({}) at {},{},{}", name, count,
                                  values.size(), *bad, at % nx, at / nx % ny, at / (nx * ny)));
+}
+
+/// Vertices of meshes are floats.
+void require_float_corners(const VolumeView& volume) {
+  constexpr auto kMost = double(std::numeric_limits<float>::max());
+  const Lattice& lattice = volume.lattice();
+  for (int c = 0; c < 8; ++c) {
+    const Vec3 corner = lattice.frame.world(Vec3(lattice.size - 1) * Vec3(c & 1, c >> 1 & 1, c >> 2));
+    const double farthest = std::max({std::fabs(corner.x), std::fabs(corner.y), std::fabs(corner.z)});
+    if (!(farthest <= kMost))
+      throw InvalidInput(fmt::format("{}: a corner of it lies at ({}, {}, {}); coordinates up to {:.2g} are allowed",
+                                     volume.name(), corner.x, corner.y, corner.z, kMost));
+  }
 }
 
 }  // namespace
@@ -114,6 +128,7 @@ void require_usable(const VolumeView& volume) {
         fmt::format("{}: {}x{}x{} grid points; every axis needs at least 2", volume.name(), size.x, size.y, size.z));
   }
   require_spanning(volume.lattice().frame, volume.name());
+  require_float_corners(volume);
   if (const auto* floats = std::get_if<std::span<const float>>(&volume.voxels()))
     require_finite(volume.name(), size, *floats);
 }

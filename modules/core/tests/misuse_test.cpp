@@ -32,7 +32,7 @@ TEST(Misuse, ValuesThatAreNotOneAPointAreRefused) {
 
 TEST(Misuse, AxesThatSpanNoVolumeAreRefused) {
   const double infinity = std::numeric_limits<double>::infinity();
-  for (const Mat3& axes : {Mat3(0.0), Mat3(kNotANumber), Mat3(infinity), Mat3(1e-120),
+  for (const Mat3& axes : {Mat3(0.0), Mat3(kNotANumber), Mat3(infinity), Mat3(1e-120), Mat3(2e38),
                            Mat3(Vec3(1, 0, 0), Vec3(0, 1, 0), Vec3(1, 1, 0))}) {
     Volume volume = rising_volume();
     const auto values = volume.values.values();

@@ -87,8 +87,8 @@ struct ValueRange {
 /// Smallest and largest value. \pre at least one voxel. Cost: one pass.
 [[nodiscard]] ValueRange value_range(const VolumeView& volume);
 
-/// \throw InvalidInput, naming the volume, if an axis has fewer than two grid points, a value is not finite or the axes
-/// span no volume: what every stage after reading relies on.
+/// \throw InvalidInput, naming the volume, if an axis has fewer than two grid points, a value is not finite, the axes
+/// span no volume or leave what floats hold: what every stage after reading relies on.
 void require_usable(const VolumeView& volume);
 
 }  // namespace isolux
