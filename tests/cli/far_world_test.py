@@ -12,7 +12,8 @@ class FarWorld(CommandLineTest):
                 f"space directions: (.3,0,0) (0,1,0) (0,0,2)\nspace origin: ({far + 0.07},0,0)\n\n")
         self.write("far.nrrd", head.encode() + bytes(12 * (i + j + k) for k in range(n) for j in range(n) for i in range(n)))
         self.succeed("bake", "far.nrrd", "-o", "light.nrrd", "--bounces", 0, "--rays", 1, "--quiet")
-        self.succeed("extract", "far.nrrd", "--iso", 125, "-o", "mesh.ply")
+        done = self.succeed("extract", "far.nrrd", "--iso", 125, "-o", "mesh.ply")
+        self.assertRegex(done.stderr, "warning: .* tell 2.4 places a voxel apart")
         vertices = ply(self.path("mesh.ply"))[1]
         self.assertTrue(any(v[0] > far + 0.07 + 0.3 * (n - 1) or v[0] < far + 0.07 for v in vertices), "no rim beyond the box")
         far_off = f"{far + 0.07 - 2},1,1\n{far + 1},-.001,1\n{far + 1},1,14.001\n"

@@ -3,11 +3,13 @@
 #include <isolux/bake/light_points.h>
 #include <isolux/core/error.h>
 #include <isolux/mc_extract/measure_mesh.h>
+#include <isolux/mc_extract/vertex_resolution.h>
 #include <isolux/mc_extract/write_mesh.h>
 #include <isolux/render/image.h>
 #include <isolux/resample/light_reader.h>
 #include <isolux/volume_io/atomic_file.h>
 
+#include <algorithm>
 #include <memory>
 
 #include "bake_options.h"
@@ -134,6 +136,18 @@ void report_mesh(const IsoMesh& mesh, const ExtractOptions& options, const std::
   session.say(fmt::format("{} triangles, {} vertices", mesh.n_faces(), mesh.n_vertices()));
 }
 
+/// Meshes are made of floats.
+void warn_coarse(const Lattice& lattice, const Session& session) {
+  constexpr double kEnough = 64.0;
+  const Vec3 resolution = vertex_resolution(lattice);
+  const double places = 1.0 / std::max({resolution.x, resolution.y, resolution.z});
+  if (places >= kEnough) return;
+  session.warn(
+      fmt::format("so far from the world's origin a mesh's float coordinates tell {:.2g} places a voxel apart: small "
+                  "triangles may be empty",
+                  places));
+}
+
 void extract(const Subject& subject, const BackendChoice& choice, const ExtractOptions& options, Session& session) {
   const VolumeView& volume = subject.volume;
   std::optional<LightFile> light;
@@ -157,6 +171,7 @@ void extract(const Subject& subject, const BackendChoice& choice, const ExtractO
   });
   // A cap closes the whole box where all of it is inside.
   if (!options.cap || mesh.n_faces() == 0) warn_outside_range(volume, options.isovalue, session);
+  warn_coarse(volume.lattice(), session);
   std::vector<Rgb8> colours;
   if (options.exact_light) {
     Scene traced = scene;
