@@ -14,7 +14,7 @@ namespace {
 enum State : std::uint8_t { kUnlit = 0, kLit = 1, kInFront = 2 };
 
 /// A step to one of the 26 neighbours and the weight of what lies there.
-struct Neighbour {
+struct GridStep {
   Index3 step{0};
   double weight = 0.0;
 };
@@ -30,9 +30,9 @@ bool inside(const Lattice& lattice, const Index3& i) {
 }
 
 /// Weights fall with the square of the distance along the axes, so that thick slices do not smear across.
-std::array<Neighbour, 26> make_neighbours(const Lattice& lattice) {
+std::array<GridStep, 26> make_neighbours(const Lattice& lattice) {
   const Vec3 spacing = lattice.frame.spacing();
-  std::array<Neighbour, 26> result;
+  std::array<GridStep, 26> result;
   std::size_t n = 0;
   for (int q = 0; q < 27; ++q) {
     const Index3 step{q % 3 - 1, q / 3 % 3 - 1, q / 9 - 1};
@@ -117,7 +117,7 @@ class Filler {
     const auto channels = std::size_t(grid_.channels);
     std::array<double, 3> sum{};
     double weight = 0.0;
-    for (const Neighbour& n : around_) {
+    for (const GridStep& n : around_) {
       const Index3 i = at + n.step;
       if (!inside(lattice(), i)) continue;
       const std::size_t from = lattice().offset(i.x, i.y, i.z);
@@ -131,7 +131,7 @@ class Filler {
   IlluminationGrid grid_;
   std::vector<std::uint8_t> state_;
   const Run& run_;
-  std::array<Neighbour, 26> around_;
+  std::array<GridStep, 26> around_;
 };
 
 }  // namespace

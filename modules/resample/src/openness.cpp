@@ -22,7 +22,7 @@ constexpr double kLeastOfChance = 10.0;
 /// distance; weights that explain one by the other are tens of times the light.
 constexpr double kMostOfLight = 2.0;
 /// Of the moments' diagonal, added to it: openness at several steps may be all alike.
-constexpr double kRidge = 1e-6;
+constexpr double kAddedToDiagonal = 1e-6;
 
 }  // namespace
 
@@ -49,7 +49,7 @@ void NearFieldFit::operator+=(const NearFieldFit& more) {
 std::optional<Vec3> NearFieldFit::weights(int channel, double light, double rows) const {
   Vec3 scale(0.0);
   for (int s = 0; s < 3; ++s) scale[s] = openness_[s][s] > 0.0 ? 1.0 / std::sqrt(openness_[s][s]) : 0.0;
-  Mat3 scaled(kRidge);
+  Mat3 scaled(kAddedToDiagonal);
   for (int s = 0; s < 3; ++s)
     for (int t = 0; t < 3; ++t) scaled[s][t] += scale[s] * openness_[s][t] * scale[t];
   const Vec3& products = by_channel_[std::size_t(channel)];

@@ -4,7 +4,7 @@
 namespace isolux {
 namespace {
 
-std::string header(const std::string& lines) {
+std::string header_of(const std::string& lines) {
   return "NRRD0005\ndimension: 3\nsizes: 3 2 2\n" + lines + "\n" + test::bytes_of(test::ramp());
 }
 
@@ -12,7 +12,7 @@ TEST(NrrdNames, AreReadInEitherCase) {
   const test::TemporaryFolder folder;
   for (const std::string type : {"SHORT", "Short", "Signed Short"}) {
     const Volume volume =
-        read_volume(folder.write("a.nrrd", header("type: " + type + "\nencoding: Raw\nendian: Little\n")));
+        read_volume(folder.write("a.nrrd", header_of("type: " + type + "\nencoding: Raw\nendian: Little\n")));
     EXPECT_EQ(volume.stored_type, ScalarType::kInt16) << type;
     EXPECT_EQ(volume.values(2, 1, 1), 11.0f) << type;
   }
@@ -23,7 +23,7 @@ TEST(NrrdNames, OfCenteringsAreReadInEitherCase) {
   const auto origin = [&](const std::string& word) {
     const std::string fields =
         "type: short\nencoding: raw\nendian: little\naxis mins: 1 1 1\nspacings: 2 2 2\ncenterings: ";
-    return read_volume(folder.write("a.nrrd", header(fields + word + " " + word + " " + word + "\n")))
+    return read_volume(folder.write("a.nrrd", header_of(fields + word + " " + word + " " + word + "\n")))
         .lattice()
         .frame.origin;
   };
@@ -35,8 +35,8 @@ TEST(NrrdNames, OfPairsMayHaveColons) {
   const test::TemporaryFolder folder;
   const std::string fields = "type: short\nencoding: raw\nendian: little\n";
   for (const std::string pair : {"a:b:=c", "a:=b: c", "DICOM_0008:0060:=CT"})
-    EXPECT_EQ(test::reading_error(folder.write("a.nrrd", header(fields + pair + "\n"))), "") << pair;
-  EXPECT_NE(test::reading_error(folder.write("a.nrrd", header(fields + "a: b:=c\n"))), "") << "a field 'a'";
+    EXPECT_EQ(test::reading_error(folder.write("a.nrrd", header_of(fields + pair + "\n"))), "") << pair;
+  EXPECT_NE(test::reading_error(folder.write("a.nrrd", header_of(fields + "a: b:=c\n"))), "") << "a field 'a'";
 }
 
 }  // namespace
