@@ -88,6 +88,31 @@ class Outputs(CommandLineTest):
         self.succeed("convert", "scan.nrrd", "scan.nrrd", "--compress")  # in place: nothing is lost
 
 
+class OpenFiles(CommandLineTest):
+    def test_are_written_to_as_they_are(self):
+        self.succeed("convert", "gen:sphere:8", "scan.nrrd")
+        os.symlink("/dev/stdout", self.path("out.nrrd"))
+        command = [ISOLUX, "convert", "gen:sphere:8", "out.nrrd", "--quiet"]
+        through = subprocess.run(command, cwd=self.folder, capture_output=True)
+        self.assertEqual((through.returncode, through.stdout), (0, self.read("scan.nrrd")), through.stderr)
+        self.write("log", "first")
+        with open(self.path("log"), "ab") as log:
+            done = subprocess.run(command, cwd=self.folder, stdout=log, stderr=subprocess.PIPE)
+            self.assertEqual(done.returncode, 0, done.stderr)
+            log.write(b"last")
+        self.assertEqual(self.read("log"), b"first" + self.read("scan.nrrd") + b"last")
+        self.assertTrue(os.path.islink(self.path("out.nrrd")))
+
+    def test_in_a_linked_folder_have_their_data_beside_them(self):
+        os.mkdir(self.path("real"))
+        os.mkdir(self.path("links"))
+        os.symlink("../real/h.nhdr", self.path("links/l.nhdr"))
+        self.succeed("convert", "gen:torus:8", "links/l.nhdr")
+        self.assertEqual(sorted(os.listdir(self.path("real"))), ["h.nhdr", "h.raw"])
+        self.assertEqual(os.listdir(self.path("links")), ["l.nhdr"])
+        self.succeed("info", "real/h.nhdr")
+
+
 class Signals(CommandLineTest):
     def test_stop_cleanly(self):
         commands = [("bake", "gen:gyroid:64", "-o", "light.nrrd", "--rays", "4096")]

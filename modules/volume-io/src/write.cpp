@@ -44,6 +44,12 @@ bool has_data_in(const std::string& header, const fs::path& data) {
   }
 }
 
+/// Where a detached header is written: its data lie beside it, however it was named.
+std::string header_at(const std::string& path) {
+  std::string target = written_file(path);
+  return detail::has_extension(target, ".nhdr") ? target : path;
+}
+
 /// Beside its header: nobody has named it, so that what is there already may be somebody's only copy.
 std::string data_file_of(const std::string& header, const WriteOptions& options) {
   const fs::path data = fs::path(header).replace_extension(options.compress ? ".raw.gz" : ".raw");
@@ -60,7 +66,7 @@ std::string data_file_of(const std::string& header, const WriteOptions& options)
 
 void write_detached(const VolumeView& volume, const std::string& path, const WriteOptions& options) {
   auto image = nrrd_image(volume, options);
-  const std::string data = data_file_of(path, options);
+  const std::string data = data_file_of(header_at(path), options);
   image.data_file = fs::path(data).filename().string();
   // The data first: a header never points to nothing.
   write_atomically(data, [&](std::ostream& out) { detail::write_nrrd_values(out, image, volume.voxels()); });
@@ -85,7 +91,7 @@ void write_headerless(const VolumeView& volume, const std::string& path) {
 }  // namespace
 
 std::vector<std::string> files_written(const std::string& path, const WriteOptions& options) {
-  if (detail::has_extension(path, ".nhdr")) return {path, data_file_of(path, options)};
+  if (detail::has_extension(path, ".nhdr")) return {path, data_file_of(header_at(path), options)};
   if (detail::has_extension(path, ".nrrd") || detail::has_extension(path, ".raw")) return {path};
   throw InvalidInput(fmt::format("{}: volumes can be written as .nrrd, .nhdr and name_WxHxD_type.raw", path));
 }

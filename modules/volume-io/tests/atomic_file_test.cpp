@@ -1,7 +1,9 @@
 #include "support.h"
 
+#include <fcntl.h>
 #include <gmock/gmock.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 #include <thread>
 
@@ -120,6 +122,50 @@ TEST(AtomicFile, NamesTheFileAskedForAndNotTheTemporary) {
 TEST(AtomicFile, WritesIntoADeviceInsteadOfReplacingIt) {
   write_atomically("/dev/null", [](std::ostream& out) { out << "gone"; });
   EXPECT_TRUE(std::filesystem::is_character_file("/dev/null"));
+}
+
+TEST(AtomicFile, GoesOnWritingAnOpenFile) {
+  const test::TemporaryFolder folder;
+  const auto path = folder.write("log", "first ");
+  const int file = open(path.c_str(), O_WRONLY | O_APPEND);
+  ASSERT_GE(file, 0);
+  for (const char* where : {"/dev/fd/", "/proc/self/fd/"}) {
+    const std::string name = where + std::to_string(file);
+    EXPECT_NO_THROW(require_writable(name));
+    write_atomically(name, [](std::ostream& out) { out << "second "; });
+    std::filesystem::remove(folder.file("link"));
+    std::filesystem::create_symlink(name, folder.file("link"));
+    write_atomically_by_name(folder.file("link"),
+                             [](const std::string& temporary) { std::ofstream(temporary) << "third "; });
+  }
+  ASSERT_EQ(write(file, "last", 4), 4);
+  close(file);
+  EXPECT_EQ(test::read_file(path), "first second third second third last");
+  EXPECT_EQ(folder.entries(), 2u);
+}
+
+TEST(AtomicFile, WritesIntoAPipe) {
+  int ends[2];
+  ASSERT_EQ(pipe(ends), 0);
+  const std::string name = "/dev/fd/" + std::to_string(ends[1]);
+  EXPECT_NO_THROW(require_writable(name));
+  write_atomically(name, [](std::ostream& out) { out << "through"; });
+  char text[16] = {};
+  EXPECT_EQ(read(ends[0], text, sizeof(text)), 7);
+  EXPECT_STREQ(text, "through");
+  close(ends[0]);
+  close(ends[1]);
+}
+
+TEST(AtomicFile, KeepsTheModeOfTheFileThatItReplaces) {
+  const test::TemporaryFolder folder;
+  const auto path = folder.write("secret", "old");
+  ASSERT_EQ(chmod(path.c_str(), 0600), 0);
+  write_atomically(path, [](std::ostream& out) { out << "new"; });
+  struct stat status {};
+  ASSERT_EQ(stat(path.c_str(), &status), 0);
+  EXPECT_EQ(status.st_mode & 0777u, 0600u);
+  EXPECT_EQ(test::read_file(path), "new");
 }
 
 TEST(AtomicFile, LetsManyThreadsWriteOneFile) {
