@@ -9,6 +9,7 @@
 #include <array>
 #include <fstream>
 #include <map>
+#include <optional>
 #include <set>
 
 namespace isolux::detail {
@@ -21,6 +22,7 @@ constexpr std::uint64_t kLargestRatio = 4096;
 
 enum Tag : int {
   kSubfileType = 254,
+  kOldSubfileType = 255,
   kWidth = 256,
   kHeight = 257,
   kBits = 258,
@@ -74,9 +76,9 @@ class TiffWalker {
 
  private:
   static bool wanted(int tag) {
-    static constexpr std::array<int, 13> kWanted = {kSubfileType, kWidth,        kHeight,      kBits,    kCompression,
-                                                    kPhotometric, kStripOffsets, kOrientation, kSamples, kStripBytes,
-                                                    kTileWidth,   kTileOffsets,  kSampleFormat};
+    static constexpr std::array kWanted = {kSubfileType, kOldSubfileType, kWidth,        kHeight,      kBits,
+                                           kCompression, kPhotometric,    kStripOffsets, kOrientation, kSamples,
+                                           kStripBytes,  kTileWidth,      kTileOffsets,  kSampleFormat};
     return std::find(kWanted.begin(), kWanted.end(), tag) != kWanted.end();
   }
   HeaderBytes bytes(std::uint64_t offset, std::uint64_t count) {
@@ -174,7 +176,21 @@ ScalarType pixel_type(const std::string& path, const Tags& tags) {
                   path, bits, format));
 }
 
+// What kind of page it is, as NewSubfileType has it, and as libtiff takes it from the older tag too; nothing if the
+// page does not say.
+std::optional<std::uint64_t> page_kind(const Tags& tags) {
+  constexpr std::uint64_t kOldReduced = 2;
+  constexpr std::uint64_t kOldPage = 3;
+  const std::uint64_t old = one(tags, kOldSubfileType, 0);
+  if (old == kOldReduced) return 1;
+  if (old == kOldPage) return 2;
+  const auto it = tags.find(kSubfileType);
+  return it == tags.end() || it->second.empty() ? std::nullopt : std::optional(it->second.front());
+}
+
 void check_layout(const std::string& path, const Tags& tags) {
+  if (!tags.contains(kPhotometric))
+    throw InvalidInput(fmt::format("{}: a TIFF page without PhotometricInterpretation: 0 or 1 (grey) is needed", path));
   if (one(tags, kSamples, 1) != 1 || one(tags, kPhotometric, 1) > 1)
     throw InvalidInput(
         fmt::format("{}: {} samples a pixel, PhotometricInterpretation {}: supported are grey TIFF pages "
@@ -185,9 +201,24 @@ void check_layout(const std::string& path, const Tags& tags) {
   if (const auto orientation = one(tags, kOrientation, 1); orientation != 1 && orientation != 4)
     throw InvalidInput(
         fmt::format("{}: TIFF Orientation {}: supported are 1 and 4, rows from the left", path, orientation));
-  if ((one(tags, kSubfileType, 0) & 1u) != 0)
+  if ((page_kind(tags).value_or(0) & 5u) != 0)
+    throw InvalidInput(fmt::format(
+        "{}: a TIFF page that is a smaller copy of another, or a mask (NewSubfileType): not supported", path));
+}
+
+// ITK counts the pages whose kind is 0, or all pages if there are none such, and turns all as the first page says.
+void check_same(const std::string& path, int page, const Tags& tags, const Tags& first) {
+  const auto orientation = one(tags, kOrientation, 1);
+  if (orientation != one(first, kOrientation, 1))
+    throw InvalidInput(fmt::format("{}: page {} has the Orientation {}, the first {}: pages of one are supported", path,
+                                   page, orientation, one(first, kOrientation, 1)));
+  const auto kind = page_kind(tags);
+  const auto first_kind = page_kind(first);
+  const auto word = [](const auto& of) { return of ? fmt::format("{}", *of) : "none"; };
+  if ((kind == 0) != (first_kind == 0))
     throw InvalidInput(
-        fmt::format("{}: a TIFF page that is a smaller copy of another (NewSubfileType): not supported", path));
+        fmt::format("{}: page {} has the NewSubfileType {}, the first {}: where a page has 0, all have to", path, page,
+                    word(kind), word(first_kind)));
 }
 
 }  // namespace
@@ -201,9 +232,11 @@ bool is_tiff(const std::string& path) {
 CheckedHeader check_tiff(const std::string& path) {
   TiffWalker walker(path);
   CheckedHeader checked;
+  Tags first;
   for (int pages = 0; !walker.at_end(); ++pages) {
     if (pages == kMostPages) throw InvalidInput(fmt::format("{}: more than {} TIFF pages", path, kMostPages));
     const Tags tags = walker.page();
+    if (pages == 0) first = tags;
     const std::array<std::int64_t, 2> size = {std::int64_t(one(tags, kWidth, 0)), std::int64_t(one(tags, kHeight, 0))};
     check_layout(path, tags);
     const ScalarType type = pixel_type(path, tags);
@@ -214,6 +247,7 @@ CheckedHeader check_tiff(const std::string& path) {
       throw InvalidInput(fmt::format("{}: page {} is {}x{} {}, the first {}x{} {}", path, pages, page.x, page.y,
                                      scalar_type_name(type), checked.size.x, checked.size.y,
                                      scalar_type_name(*checked.type)));
+    check_same(path, pages, tags, first);
     checked.size = page;
     checked.type = type;
   }

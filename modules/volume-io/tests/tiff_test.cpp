@@ -54,6 +54,14 @@ std::string tiff_with(std::uint16_t tag, std::uint16_t value, std::string bytes 
   return longer;
 }
 
+// Two samples as the pages of one file: the second moved behind the first.
+std::string two_pages(std::string first, std::string second) {
+  const auto tags = [](const std::string& page) { return std::size_t(page[8]); };
+  test::put<std::uint32_t>(second, 10 + 5 * 12 + 8, std::uint32_t(first.size() + second.size() - 8 - 12));
+  test::put<std::uint32_t>(first, 10 + tags(first) * 12, std::uint32_t(first.size()));
+  return first + second.substr(8);
+}
+
 TEST_F(Itk, ReadsThePixelsThatTiffSays) {
   constexpr std::uint16_t kFormat = 339;
   const auto type = [&](const std::string& bytes) {
@@ -84,13 +92,50 @@ TEST_F(Itk, RefusesTiffPagesOfSeveralTypes) {
   (void)folder_.write("s1.tif", test::tiff_sample(0));
   (void)folder_.write("s2.tif", tiff_with(339, 2));
   EXPECT_THAT(test::reading_error(folder_.file("."), kSpaced), HasSubstr("3x2 int16 pixels"));
-  // Two pages in one file: the second is the sample again, moved behind the first.
-  std::string pages = test::tiff_sample(0);
-  const auto first = std::uint32_t(pages.size());
-  std::string second = tiff_with(339, 2).substr(8);
-  test::put<std::uint32_t>(second, 2 + 5 * 12 + 8, first + std::uint32_t(second.size()) - 12);
-  test::put<std::uint32_t>(pages, 10 + 9 * 12, first);
-  EXPECT_THAT(refused("a.tif", pages + second, kSpaced), HasSubstr("page 1 is 3x2 int16, the first 3x2 uint16"));
+  EXPECT_THAT(refused("a.tif", two_pages(test::tiff_sample(0), tiff_with(339, 2)), kSpaced),
+              HasSubstr("page 1 is 3x2 int16, the first 3x2 uint16"));
+}
+
+// ITK counts pages in its own way, and crashes where it counted too few.
+TEST_F(Itk, RefusesTiffPagesThatItkCountsOtherwise) {
+  constexpr std::uint16_t kKind = 254;
+  constexpr std::uint16_t kOldKind = 255;
+  const std::string plain = test::tiff_sample(0);
+  const auto message = [&](const std::string& one, const std::string& other) {
+    return refused("a.tif", two_pages(one, other), kSpaced);
+  };
+  EXPECT_THAT(message(plain, tiff_with(kKind, 0)), HasSubstr("page 1 has the NewSubfileType 0, the first none"));
+  EXPECT_THAT(message(tiff_with(kKind, 0), plain), HasSubstr("page 1 has the NewSubfileType none, the first 0"));
+  EXPECT_THAT(message(tiff_with(kKind, 2), tiff_with(kKind, 0)), HasSubstr("NewSubfileType 0, the first 2"));
+  EXPECT_THAT(message(tiff_with(kKind, 0), tiff_with(kOldKind, 3)), HasSubstr("NewSubfileType 2, the first 0"));
+  EXPECT_THAT(message(plain, tiff_with(kOldKind, 2)), HasSubstr("smaller copy"));
+  EXPECT_THAT(message(plain, tiff_with(kKind, 4)), HasSubstr("a mask"));
+}
+
+TEST_F(Itk, ReadsTiffPagesThatItkCountsAsWeDo) {
+  const std::string plain = test::tiff_sample(0);
+  const auto with_kind = [](std::uint16_t tag, std::uint16_t kind) {
+    return tiff_with(tag, kind, test::tiff_sample(6));
+  };
+  for (const auto& pages : {two_pages(plain, test::tiff_sample(6)), two_pages(tiff_with(254, 0), with_kind(254, 0)),
+                            two_pages(tiff_with(254, 2), with_kind(254, 2)), two_pages(plain, with_kind(254, 2)),
+                            two_pages(plain, with_kind(255, 3)), two_pages(plain, with_kind(255, 1))})
+    expect_ramp(read_volume(folder_.write("a.tif", pages), kSpaced));
+}
+
+// ITK turns them all as the first.
+TEST_F(Itk, RefusesTiffPagesOfSeveralOrientations) {
+  EXPECT_THAT(refused("a.tif", two_pages(test::tiff_sample(0), tiff_with(274, 4)), kSpaced),
+              HasSubstr("page 1 has the Orientation 4, the first 1"));
+  EXPECT_THAT(refused("a.tif", two_pages(tiff_with(274, 4), tiff_with(274, 1)), kSpaced),
+              HasSubstr("page 1 has the Orientation 1, the first 4"));
+}
+
+// The tag is one that each page has to have.
+TEST_F(Itk, RefusesTiffPagesThatDoNotSayWhatTheirNumbersAre) {
+  std::string bytes = test::tiff_sample(0);
+  test::put<std::uint16_t>(bytes, 10 + 4 * 12, 260);
+  EXPECT_THAT(refused("a.tif", bytes, kSpaced), HasSubstr("without PhotometricInterpretation"));
 }
 
 // Rows from the bottom up are turned.
