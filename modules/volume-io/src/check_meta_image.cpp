@@ -1,16 +1,14 @@
 #include "files.h"
 #include "format_checks.h"
-#include "nrrd_text.h"
+#include "number_text.h"
+#include "plain_text.h"
 
 #include <fmt/format.h>
 #include <isolux/core/error.h>
 
 #include <algorithm>
 #include <array>
-#include <cctype>
-#include <charconv>
 #include <cmath>
-#include <fstream>
 #include <map>
 
 namespace isolux::detail {
@@ -33,18 +31,18 @@ MetaText read_meta_text(const std::string& path) {
     const std::size_t newline = bytes.find('\n', text.end);
     const std::string line = bytes.substr(text.end, newline - text.end);
     text.end = newline == std::string::npos ? bytes.size() : newline + 1;
-    const auto words = nrrd_words(line);
+    const auto words = plain_words(line);
     if (words.empty()) continue;
     const auto equals = line.find('=');
     if (equals == std::string::npos)
       throw InvalidInput(fmt::format("{}: a MetaImage header line is not of the form 'Key = Value'", path));
-    const auto key = nrrd_words(line.substr(0, equals));
+    const auto key = plain_words(line.substr(0, equals));
     if (key.size() != 1) throw InvalidInput(fmt::format("{}: a MetaImage header line has no key", path));
-    const auto values = nrrd_words(line.substr(equals + 1));
+    const auto values = plain_words(line.substr(equals + 1));
     std::string value;
     for (const auto& word : values) value += value.empty() ? word : " " + word;
     if (!text.fields.emplace(key.front(), value).second)
-      throw InvalidInput(fmt::format("{}: '{}' is given twice", path, key.front()));
+      throw InvalidInput(fmt::format("{}: '{}' is given twice", path, excerpt(key.front())));
     text.keys.push_back(key.front());
     if (key.front() == "ElementDataFile") return text;
   }
@@ -61,8 +59,7 @@ class MetaFields {
   }
   [[nodiscard]] bool has(const std::string& key) const { return text_.fields.contains(key); }
   [[nodiscard]] bool truth(const std::string& key, bool otherwise) const {
-    std::string word = text(key, otherwise ? "true" : "false");
-    std::transform(word.begin(), word.end(), word.begin(), [](unsigned char c) { return char(std::tolower(c)); });
+    const std::string word = lower_case(text(key, otherwise ? "true" : "false"));
     if (word == "true" || word == "1") return true;
     if (word == "false" || word == "0") return false;
     refuse(key, "allowed are True and False");
@@ -79,19 +76,17 @@ class MetaFields {
   /// `count` numbers, or none if the key is not there.
   [[nodiscard]] std::vector<double> numbers(const std::string& key, std::size_t count) const {
     std::vector<double> values;
-    for (const auto& word : nrrd_words(text(key))) {
-      double value = 0.0;
-      const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
-      if (error != std::errc() || end != word.data() + word.size() || !std::isfinite(value))
-        refuse(key, "finite numbers are needed");
-      values.push_back(value);
+    for (const auto& word : plain_words(text(key))) {
+      const auto value = parse_real(word);
+      if (!value || !std::isfinite(*value)) refuse(key, "finite numbers are needed");
+      values.push_back(*value);
     }
     if (text_.fields.contains(key) && values.size() != count) refuse(key, fmt::format("{} numbers are needed", count));
     return values;
   }
   [[nodiscard]] const std::string& path() const { return path_; }
   [[noreturn]] void refuse(const std::string& key, std::string_view allowed) const {
-    throw InvalidInput(fmt::format("{}: '{} = {}': {}", path_, key, text(key), allowed));
+    throw InvalidInput(fmt::format("{}: '{} = {}': {}", path_, key, excerpt(text(key)), allowed));
   }
 
  private:
@@ -133,7 +128,7 @@ bool is_big_endian(const MetaFields& fields) {
   const bool big = fields.truth(key, false);
   if (fields.truth("BinaryDataByteOrderMSB", big) != big)
     fields.refuse("BinaryDataByteOrderMSB",
-                  fmt::format("ElementByteOrderMSB = {} says otherwise", fields.text("ElementByteOrderMSB")));
+                  fmt::format("ElementByteOrderMSB = {} says otherwise", excerpt(fields.text("ElementByteOrderMSB"))));
   return big;
 }
 

@@ -2,8 +2,8 @@
 
 #include "files.h"
 #include "format_checks.h"
-#include "nrrd_text.h"
 #include "number_text.h"
+#include "plain_text.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -11,7 +11,6 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <map>
 #include <optional>
 
@@ -25,11 +24,11 @@ class VtkHeader {
  public:
   explicit VtkHeader(const std::string& path) : path_(path), bytes_(first_bytes(path, kLongestVtkHeader)) {}
 
-  /// The next line, as words.
+  /// The next line, as words in lower case: VTK reads them in any.
   std::vector<std::string> any_line() {
     const std::size_t newline = bytes_.find('\n', end_);
     if (newline == std::string::npos) throw IoError(fmt::format("{}: the VTK header ends early", path_));
-    auto words = nrrd_words(std::string_view(bytes_).substr(end_, newline - end_));
+    auto words = plain_words(lower_case(std::string_view(bytes_).substr(end_, newline - end_)));
     end_ = newline + 1;
     return words;
   }
@@ -42,21 +41,23 @@ class VtkHeader {
   [[nodiscard]] std::size_t end() const { return end_; }
 
   [[nodiscard]] double number(const std::vector<std::string>& words, std::size_t index) const {
-    double value = 0.0;
     const std::string word = index < words.size() ? words[index] : "";
-    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
-    if (error != std::errc() || end != word.data() + word.size())
-      throw InvalidInput(fmt::format("{}: VTK '{}': '{}' is not a number", path_, words.front(), word));
-    return value;
+    const auto value = parse_real(word);
+    if (!value)
+      throw InvalidInput(
+          fmt::format("{}: VTK '{}': '{}' is not a number", path_, excerpt(words.front()), excerpt(word)));
+    return *value;
   }
   [[nodiscard]] std::array<double, 3> triple(const std::vector<std::string>& words) const {
-    if (words.size() != 4) throw InvalidInput(fmt::format("{}: VTK '{}' needs three numbers", path_, words.front()));
+    if (words.size() != 4)
+      throw InvalidInput(fmt::format("{}: VTK '{}' needs three numbers", path_, excerpt(words.front())));
     return {number(words, 1), number(words, 2), number(words, 3)};
   }
   [[nodiscard]] std::array<std::int64_t, 3> sizes(const std::vector<std::string>& words) const {
     const auto numbers = triple(words);
     if (!std::all_of(words.begin() + 1, words.end(), [](const auto& w) { return reads_as(ScalarType::kInt64, w); }))
-      throw InvalidInput(fmt::format("{}: VTK '{}': three whole numbers are needed", path_, fmt::join(words, " ")));
+      throw InvalidInput(fmt::format("{}: VTK '{}': three whole numbers are needed", path_,
+                                     excerpt(fmt::format("{}", fmt::join(words, " ")))));
     return {std::int64_t(numbers[0]), std::int64_t(numbers[1]), std::int64_t(numbers[2])};
   }
 
@@ -67,19 +68,27 @@ class VtkHeader {
 };
 
 ScalarType scalar_type(const std::string& path, const std::string& type) {
-  static const std::map<std::string, ScalarType> types = {
-      {"char", ScalarType::kInt8},          {"unsigned_char", ScalarType::kUint8},
-      {"short", ScalarType::kInt16},        {"unsigned_short", ScalarType::kUint16},
-      {"int", ScalarType::kInt32},          {"unsigned_int", ScalarType::kUint32},
-      {"float", ScalarType::kFloat32},      {"double", ScalarType::kFloat64},
-      {"long", ScalarType::kInt64},         {"unsigned_long", ScalarType::kUint64},
-      {"vtktypeint64", ScalarType::kInt64}, {"vtktypeuint64", ScalarType::kUint64}};
+  static const std::map<std::string, ScalarType> types = {{"char", ScalarType::kInt8},
+                                                          {"signed_char", ScalarType::kInt8},
+                                                          {"unsigned_char", ScalarType::kUint8},
+                                                          {"short", ScalarType::kInt16},
+                                                          {"unsigned_short", ScalarType::kUint16},
+                                                          {"int", ScalarType::kInt32},
+                                                          {"unsigned_int", ScalarType::kUint32},
+                                                          {"float", ScalarType::kFloat32},
+                                                          {"double", ScalarType::kFloat64},
+                                                          {"long", ScalarType::kInt64},
+                                                          {"unsigned_long", ScalarType::kUint64},
+                                                          {"long_long", ScalarType::kInt64},
+                                                          {"unsigned_long_long", ScalarType::kUint64},
+                                                          {"vtktypeint64", ScalarType::kInt64},
+                                                          {"vtktypeuint64", ScalarType::kUint64}};
   const auto it = types.find(type);
   if (it == types.end())
     throw InvalidInput(
         fmt::format("{}: VTK scalars of type '{}': supported are (unsigned_)char, (unsigned_)short, "
-                    "(unsigned_)int, (unsigned_)long, float and double",
-                    path, type));
+                    "(unsigned_)int, (unsigned_)long, (unsigned_)long_long, float and double",
+                    path, excerpt(type)));
   return it->second;
 }
 
@@ -88,22 +97,21 @@ std::vector<std::string> read_lattice(const std::string& path, VtkHeader& header
   std::optional<std::array<std::int64_t, 3>> sizes;
   std::optional<double> points;
   auto words = header.line();
-  for (; words.front() != "SCALARS"; words = header.line()) {
-    if (words.front() == "DIMENSIONS") {
+  for (; words.front() != "scalars"; words = header.line()) {
+    if (words.front() == "dimensions") {
       sizes = header.sizes(words);
-    } else if (words.front() == "SPACING" || words.front() == "ASPECT_RATIO") {
+    } else if (words.front() == "spacing" || words.front() == "aspect_ratio") {
       const auto spacing = header.triple(words);
       require_spacing(path, spacing);
       for (std::size_t a = 0; a < 3; ++a) lattice.frame.axes[int(a)][int(a)] = spacing.at(a);
-    } else if (words.front() == "ORIGIN") {
+    } else if (words.front() == "origin") {
       const auto origin = header.triple(words);
       require_finite(path, "the origin", origin);
       lattice.frame.origin = Vec3(origin[0], origin[1], origin[2]);
-    } else if (words.front() == "POINT_DATA") {
+    } else if (words.front() == "point_data") {
       points = header.number(words, 1);
     } else {
-      throw InvalidInput(
-          fmt::format("{}: VTK '{}' before SCALARS is not supported", path, words.front().substr(0, 40)));
+      throw InvalidInput(fmt::format("{}: VTK '{}' before SCALARS is not supported", path, excerpt(words.front())));
     }
   }
   if (!sizes) throw InvalidInput(fmt::format("{}: VTK has no DIMENSIONS", path));
@@ -126,7 +134,7 @@ std::vector<float> read_text(const LegacyVtk& header, const Run& run) {
     if (word.empty())
       throw IoError(fmt::format("{}: {} numbers of data expected, {} found", path, count, values.size()));
     if (!reads_as(header.data.layout.type, word))
-      throw InvalidInput(fmt::format("{}: '{}', value {} of the data, is no finite {}", path, word.substr(0, 40),
+      throw InvalidInput(fmt::format("{}: '{}', value {} of the data, is no finite {}", path, excerpt(word),
                                      values.size(), scalar_type_name(header.data.layout.type)));
     values.push_back(float(text.number()));
     if (values.size() % 65536 == 0) throw_if_stopped(run);
@@ -145,17 +153,18 @@ LegacyVtk read_legacy_vtk_header(const std::string& path) {
   (void)header.any_line();
   (void)header.any_line();  // the title, which may be empty
   const std::string encoding = header.line().front();
-  if (encoding != "BINARY" && encoding != "ASCII")
-    throw InvalidInput(fmt::format("{}: VTK encoding '{}': allowed are BINARY and ASCII", path, encoding));
+  if (encoding != "binary" && encoding != "ascii")
+    throw InvalidInput(fmt::format("{}: VTK encoding '{}': allowed are BINARY and ASCII", path, excerpt(encoding)));
   const auto words = header.line();
-  if (words.size() != 2 || words[0] != "DATASET" || words[1] != "STRUCTURED_POINTS")
-    throw InvalidInput(fmt::format("{}: VTK '{}': supported is DATASET STRUCTURED_POINTS", path, words.back()));
+  if (words.size() != 2 || words[0] != "dataset" || words[1] != "structured_points")
+    throw InvalidInput(
+        fmt::format("{}: VTK '{}': supported is DATASET STRUCTURED_POINTS", path, excerpt(words.back())));
   LegacyVtk result;
-  result.text = encoding == "ASCII";
+  result.text = encoding == "ascii";
   const auto scalars = read_lattice(path, header, result.lattice);
   if (scalars.size() < 3 || scalars.size() > 4 || (scalars.size() == 4 && scalars[3] != "1"))
     throw InvalidInput(fmt::format("{}: VTK SCALARS need a name, a type and one component", path));
-  if (header.line().front() != "LOOKUP_TABLE")
+  if (header.line().front() != "lookup_table")
     throw InvalidInput(fmt::format("{}: VTK SCALARS without a LOOKUP_TABLE line", path));
   result.data = {
       .file = path, .offset = header.end(), .more_allowed = true, .layout = {scalar_type(path, scalars[2]), true}};

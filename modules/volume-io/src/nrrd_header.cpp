@@ -1,6 +1,8 @@
 #include "nrrd_header.h"
 
 #include "files.h"
+#include "number_text.h"
+#include "plain_text.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -18,8 +20,8 @@ namespace {
 constexpr std::int64_t kMostAxes = 16;
 
 template <class Number>
-std::optional<Number> number(std::string_view text) {
-  if (!text.empty() && text.front() == '+') text.remove_prefix(1);
+std::optional<Number> whole_number(std::string_view text) {
+  if (text.starts_with('+') && !text.starts_with("+-")) text.remove_prefix(1);
   Number value{};
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
@@ -83,14 +85,14 @@ class Interpreter {
   }
 
   void take_sizes() {
-    const auto dimension = number<std::int64_t>(need("dimension"));
+    const auto dimension = whole_number<std::int64_t>(need("dimension"));
     if (!dimension || *dimension < 1 || *dimension > kMostAxes)
       refuse("dimension", fmt::format("allowed is 1 to {}", kMostAxes));
     header_.axes.resize(std::size_t(*dimension));
     (void)need("sizes");
     const auto words = per_axis("sizes");
     for (std::size_t a = 0; a < words.size(); ++a) {
-      const auto size = number<std::int64_t>(words[a]);
+      const auto size = whole_number<std::int64_t>(words[a]);
       if (!size) refuse("sizes", "whole numbers are needed");
       header_.axes[a].size = *size;
     }
@@ -131,7 +133,7 @@ class Interpreter {
     if (find(field) == nullptr) return;
     const auto words = per_axis(field);
     for (std::size_t a = 0; a < words.size(); ++a) {
-      const auto value = number<double>(words[a]);
+      const auto value = parse_real(words[a]);
       if (!value) refuse(field, "numbers are needed");
       // NaN is NRRD's word for unknown.
       if (!std::isnan(*value)) header_.axes[a].*member = value;
@@ -155,7 +157,7 @@ class Interpreter {
     std::string_view rest = closed ? word.substr(1, word.size() - 2) : std::string_view();
     for (int a = 0; a < 3; ++a) {
       const auto comma = rest.find(',');
-      const auto value = number<double>(rest.substr(0, comma));
+      const auto value = parse_real(rest.substr(0, comma));
       if (!value || !std::isfinite(*value) || (comma == std::string_view::npos) != (a == 2))
         refuse(field, "vectors of three finite numbers such as (1,0,0) are needed");
       result[a] = *value;
@@ -184,12 +186,12 @@ class Interpreter {
 
   void take_data_file(const ReadOptions& options) {
     if (find("line skip") != nullptr) {
-      const auto skip = number<std::uint64_t>(text_.fields.at("line skip"));
+      const auto skip = whole_number<std::uint64_t>(text_.fields.at("line skip"));
       if (!skip) refuse("line skip", "a whole number of at least 0 is needed");
       header_.line_skip = *skip;
     }
     if (find("byte skip") != nullptr) {
-      const auto skip = number<std::int64_t>(text_.fields.at("byte skip"));
+      const auto skip = whole_number<std::int64_t>(text_.fields.at("byte skip"));
       if (!skip || *skip < -1) refuse("byte skip", "a whole number of at least -1 is needed");
       header_.byte_skip = *skip;
       if (*skip == -1 && header_.encoding != NrrdEncoding::kRaw)

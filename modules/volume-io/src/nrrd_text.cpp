@@ -1,6 +1,7 @@
 #include "nrrd_text.h"
 
 #include "files.h"
+#include "plain_text.h"
 
 #include <fmt/format.h>
 #include <isolux/core/error.h>
@@ -85,14 +86,6 @@ std::string unescape(std::string_view value) {
   return text;
 }
 
-// What a message shows of a line that may be binary rubbish.
-std::string excerpt(std::string_view line) {
-  std::string shown(line.substr(0, 40));
-  std::replace_if(
-      shown.begin(), shown.end(), [](unsigned char c) { return c < 32 || c > 126; }, '?');
-  return shown;
-}
-
 void take_line(const std::string& path, const std::string& line, NrrdText& text) {
   // A key may have colons in it, a field's name not.
   if (const auto pair = line.find(":="); pair < line.find(": ")) {
@@ -139,12 +132,6 @@ NrrdText read_nrrd_text(const std::string& path) {
     if (c == std::ifstream::traits_type::eof()) return text;
   }
   throw InvalidInput(fmt::format("{}: the header has more than {} lines", path, kMostLines));
-}
-
-std::string lower_case(std::string_view text) {
-  std::string lower(text);
-  std::transform(lower.begin(), lower.end(), lower.begin(), [](unsigned char c) { return char(std::tolower(c)); });
-  return lower;
 }
 
 std::vector<std::string> nrrd_words(std::string_view text) {

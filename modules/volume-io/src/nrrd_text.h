@@ -19,9 +19,6 @@ struct NrrdText {
 /// a line that is no field, an unknown field or one given twice
 [[nodiscard]] NrrdText read_nrrd_text(const std::string& path);
 
-/// Names of NRRD are read in either case, as teem reads them.
-[[nodiscard]] std::string lower_case(std::string_view text);
-
 /// Words separated by blanks; a vector such as "(1, 0,0)" is one word.
 [[nodiscard]] std::vector<std::string> nrrd_words(std::string_view text);
 

@@ -23,6 +23,30 @@ TEST_F(Itk, ReadsMetaImages) {
   }
 }
 
+TEST_F(Itk, ReadsMetaImagesWithSignedNumbers) {
+  std::string bytes = test::meta_header("LOCAL") + test::bytes_of(test::ramp());
+  bytes.replace(bytes.find("10 20 30"), 8, "+10 -20 +3e1");
+  bytes.replace(bytes.find("0.5 2 4"), 7, "+.5 +2 4");
+  const IndexToWorld frame = read_volume(folder_.write("a.mha", bytes)).lattice().frame;
+  EXPECT_EQ(frame.origin, Vec3(10, -20, 30));
+  EXPECT_EQ(frame.spacing(), Vec3(0.5, 2, 4));
+}
+
+// A parenthesis is a letter like others, also one without its partner.
+TEST_F(Itk, ReadsMetaImagesWithParenthesesInTheirTexts) {
+  (void)folder_.write("data (1 2).raw", test::bytes_of(test::ramp()));
+  expect_ramp(read_volume(folder_.write("a.mhd", test::meta_header("data (1 2).raw"))));
+  expect_ramp(read_volume(folder_.write("b.mhd", test::meta_header("data (1 2).raw", "Comment = a ) (\n"))));
+}
+
+TEST_F(Itk, RefusesMetaImagesInWordsThatCanBeShown) {
+  std::string bytes = test::meta_header("LOCAL");
+  bytes.replace(bytes.find("MET_SHORT"), 9, "\x01\xFF" + std::string(5000, 'x'));
+  const std::string message = refused("a.mha", bytes);
+  EXPECT_THAT(message, HasSubstr("'ElementType = ??xxx"));
+  EXPECT_LT(message.size(), 400u);
+}
+
 TEST_F(Itk, RefusesHostileMetaImages) {
   const std::string data = test::bytes_of(test::ramp());
   const auto edited = [&](const std::string& from, const std::string& to) {

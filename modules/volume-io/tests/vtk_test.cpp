@@ -2,6 +2,9 @@
 
 #include <gmock/gmock.h>
 
+#include <algorithm>
+#include <cctype>
+
 namespace isolux {
 namespace {
 using ::testing::HasSubstr;
@@ -39,6 +42,53 @@ TEST_F(LegacyVtk, IsReadWhateverItsNamesAndOrder) {
   expect_ramp(volume);
   EXPECT_EQ(volume.lattice().frame.spacing(), Vec3(0.5, 2, 4));
   EXPECT_EQ(volume.lattice().frame.origin, Vec3(10, 20, 30));
+}
+
+// As VTK reads it, which lowers all words.
+TEST_F(LegacyVtk, IsReadInAnyCase) {
+  std::string header = test::vtk_header("BINARY");
+  const std::size_t words = header.find("BINARY");
+  std::transform(header.begin() + std::ptrdiff_t(words), header.end(), header.begin() + std::ptrdiff_t(words),
+                 [](unsigned char c) { return char(std::tolower(c)); });
+  expect_ramp(read_volume(folder_.write("a.vtk", header + test::bytes_of(test::ramp(), true))));
+  header.replace(header.find("short"), 5, "Short");
+  header.replace(header.find("dimensions"), 10, "Dimensions");
+  expect_ramp(read_volume(folder_.write("a.vtk", header + test::bytes_of(test::ramp(), true))));
+}
+
+TEST_F(LegacyVtk, IsReadInEachTypeOfC) {
+  const auto type = [&](const std::string& name, const std::string& data) {
+    std::string header = test::vtk_header("BINARY");
+    header.replace(header.find("short"), 5, name);
+    const Volume volume = read_volume(folder_.write("a.vtk", header + data));
+    expect_ramp(volume);
+    return volume.stored_type;
+  };
+  const auto ramp_of = [](auto zero) {
+    const auto values = test::ramp();
+    return test::bytes_of(std::vector<decltype(zero)>(values.begin(), values.end()), true);
+  };
+  EXPECT_EQ(type("signed_char", ramp_of(std::int8_t{})), ScalarType::kInt8);
+  EXPECT_EQ(type("long_long", ramp_of(std::int64_t{})), ScalarType::kInt64);
+  EXPECT_EQ(type("unsigned_long_long", ramp_of(std::uint64_t{})), ScalarType::kUint64);
+  EXPECT_EQ(type("vtkTypeUInt64", ramp_of(std::uint64_t{})), ScalarType::kUint64);
+}
+
+TEST_F(LegacyVtk, IsPlacedByNumbersWithASign) {
+  std::string bytes = test::vtk_header("BINARY") + test::bytes_of(test::ramp(), true);
+  bytes.replace(bytes.find("10 20 30"), 8, "+10 -20 3E1");
+  bytes.replace(bytes.find("0.5 2 4"), 7, "+.5 +2 4");
+  const IndexToWorld frame = read_volume(folder_.write("a.vtk", bytes)).lattice().frame;
+  EXPECT_EQ(frame.origin, Vec3(10, -20, 30));
+  EXPECT_EQ(frame.spacing(), Vec3(0.5, 2, 4));
+}
+
+TEST_F(LegacyVtk, IsRefusedInWordsThatCanBeShown) {
+  std::string bytes = test::vtk_header("BINARY");
+  bytes.replace(bytes.find("s short 1"), 9, "s \x01\xFF" + std::string(5000, 'x') + " 1");
+  const std::string message = refused("a.vtk", bytes);
+  EXPECT_THAT(message, HasSubstr("'??xxx"));
+  EXPECT_LT(message.size(), 400u);
 }
 
 TEST_F(LegacyVtk, IsRefusedWhereItIsHostile) {
