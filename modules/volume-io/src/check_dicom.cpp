@@ -1,15 +1,20 @@
 #include "files.h"
 #include "format_checks.h"
 #include "header_bytes.h"
+#include "number_text.h"
+#include "plain_text.h"
 
 #include <fmt/format.h>
 #include <isolux/core/error.h>
 
 #include <algorithm>
 #include <array>
-#include <charconv>
+#include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <glm/geometric.hpp>
+#include <limits>
+#include <optional>
 
 namespace isolux::detail {
 namespace {
@@ -20,6 +25,7 @@ constexpr std::uint32_t kItemEnd = 0xFFFEE00Du;
 constexpr std::uint32_t kSequenceEnd = 0xFFFEE0DDu;
 constexpr std::uint32_t kPixelData = 0x7FE00010u;
 constexpr int kDeepest = 16;
+constexpr std::size_t kFirstElement = 132;
 
 struct Element {
   std::uint32_t tag = 0;
@@ -80,7 +86,7 @@ class DicomWalker {
   }
 
   [[nodiscard]] std::string text(const Element& e) {
-    std::string value = raw(e, 128);
+    std::string value = raw(e, 256);
     while (!value.empty() && (value.back() == ' ' || value.back() == '\0')) value.pop_back();
     return value;
   }
@@ -111,57 +117,132 @@ class DicomWalker {
   std::string path_;
   std::ifstream file_;
   std::uint64_t size_;
-  std::uint64_t at_ = 132;
+  std::uint64_t at_ = kFirstElement;
   bool implicit_ = false;
 };
 
-}  // namespace
-
-bool is_dicom(const std::string& path) {
-  const std::string bytes = first_bytes(path, 132);
-  // A DICOMDIR is a table of contents, not an image.
-  return bytes.size() == 132 && bytes.compare(128, 4, "DICM") == 0 &&
-         std::filesystem::path(path).filename() != "DICOMDIR";
+bool has_mark(const std::string& path) {
+  const std::string bytes = first_bytes(path, kFirstElement);
+  return bytes.size() == kFirstElement && bytes.ends_with("DICM");
 }
 
-CheckedHeader check_dicom(const std::string& path) {
-  DicomWalker walker(path);
+// What a file says of its one image.
+struct DicomImage {
   std::uint64_t rows = 0;
   std::uint64_t columns = 0;
   std::uint64_t bits = 0;
   std::uint64_t samples = 1;
+  std::string photometric;
+  std::optional<std::string> orientation;
+  std::optional<std::string> spacing;
+  std::string slope = "1";
+  bool functional_groups = false;  ///< the enhanced kind, which keeps its frame in there
   bool compressed = false;
+};
+
+void take_syntax(const std::string& path, const std::string& syntax, DicomWalker& walker, DicomImage& image) {
+  if (syntax == "1.2.840.10008.1.2.2" || syntax == "1.2.840.10008.1.2.1.99")
+    throw InvalidInput(
+        fmt::format("{}: DICOM transfer syntax {} (big endian or deflated) is not supported", path, syntax));
+  image.compressed = syntax != "1.2.840.10008.1.2" && syntax != "1.2.840.10008.1.2.1";
+  if (syntax == "1.2.840.10008.1.2") walker.set_implicit();
+}
+
+void take(const std::string& path, const Element& e, DicomWalker& walker, DicomImage& image) {
+  if (e.tag == 0x00020010u) take_syntax(path, walker.text(e), walker, image);
+  if (e.tag == 0x00200037u) image.orientation = walker.text(e);
+  if (e.tag == 0x00280002u) image.samples = walker.number(e);
+  if (e.tag == 0x00280004u) image.photometric = walker.text(e);
+  if (e.tag == 0x00280008u && walker.text(e) != "1" && !walker.text(e).empty())
+    throw InvalidInput(fmt::format("{}: DICOM of {} frames: supported is one a file", path, excerpt(walker.text(e))));
+  if (e.tag == 0x00280010u) image.rows = walker.number(e);
+  if (e.tag == 0x00280011u) image.columns = walker.number(e);
+  if (e.tag == 0x00280030u) image.spacing = walker.text(e);
+  if (e.tag == 0x00280100u) image.bits = walker.number(e);
+  if (e.tag == 0x00281053u) image.slope = walker.text(e);
+  if (e.tag == 0x52009229u || e.tag == 0x52009230u) image.functional_groups = true;
+}
+
+// Numbers with backslashes between; NaN for what is none.
+std::vector<double> decimals(std::string text) {
+  std::replace(text.begin(), text.end(), '\\', ' ');
+  std::vector<double> numbers;
+  for (const auto& word : plain_words(text))
+    numbers.push_back(parse_real(word).value_or(std::numeric_limits<double>::quiet_NaN()));
+  return numbers;
+}
+
+// GDCM takes other numbers for 1.
+void check_spacing(const std::string& path, const DicomImage& image) {
+  if (!image.spacing && image.functional_groups) return;
+  if (!image.spacing)
+    throw InvalidInput(
+        fmt::format("{}: DICOM without PixelSpacing does not say how far voxels are apart: give --spacing", path));
+  const auto spacing = decimals(*image.spacing);
+  if (spacing.size() != 2 || !std::all_of(spacing.begin(), spacing.end(), [](double s) { return s > 0.0; }))
+    throw InvalidInput(fmt::format("{}: PixelSpacing {}: two numbers above 0 are needed, or --spacing", path,
+                                   excerpt(*image.spacing)));
+}
+
+// GDCM puts the world's axes in the place of directions that are not at right angles, to this sine.
+void check_orientation(const std::string& path, const std::string& text) {
+  constexpr double kMostTilt = 1e-3;
+  const auto n = decimals(text);
+  const bool six = n.size() == 6;
+  const Vec3 row = six ? Vec3(n[0], n[1], n[2]) : Vec3(0);
+  const Vec3 column = six ? Vec3(n[3], n[4], n[5]) : Vec3(0);
+  // False also for directions that are 0 or no numbers.
+  if (!(std::fabs(glm::dot(row, column)) < kMostTilt * glm::length(row) * glm::length(column)))
+    throw InvalidInput(
+        fmt::format("{}: ImageOrientationPatient {}: two directions at right angles are needed", path, excerpt(text)));
+}
+
+void check_image(const std::string& path, const DicomImage& image, const ReadOptions& options) {
+  if (image.samples != 1)
+    throw InvalidInput(fmt::format("{}: {} samples a pixel: a volume has one", path, image.samples));
+  if (image.photometric != "MONOCHROME1" && image.photometric != "MONOCHROME2")
+    throw InvalidInput(fmt::format("{}: PhotometricInterpretation '{}': supported are MONOCHROME1 and MONOCHROME2",
+                                   path, excerpt(image.photometric)));
+  if (image.bits % 8 != 0 || image.bits == 0 || image.bits > 32)
+    throw InvalidInput(fmt::format("{}: {} bits a pixel: supported are 8, 16 and 32", path, image.bits));
+  if (decimals(image.slope) == std::vector<double>{0.0})
+    throw InvalidInput(fmt::format("{}: RescaleSlope 0: a number other than 0 is needed", path));
+  if (!options.spacing) check_spacing(path, image);
+  if (image.orientation) check_orientation(path, *image.orientation);
+}
+
+void check_pixels(const std::string& path, const Element& e, const DicomImage& image, DicomWalker& walker) {
+  const std::array<std::int64_t, 2> size = {std::int64_t(image.columns), std::int64_t(image.rows)};
+  const std::uint64_t needed = checked_count(path, size, 8) * (image.bits / 8);
+  if (image.compressed) {
+    walker.skip(e);
+    return;
+  }
+  const std::uint64_t found = std::min<std::uint64_t>(e.length, walker.bytes_behind(e));
+  if (found < needed) throw IoError(fmt::format("{}: {} bytes of pixel data expected, {} found", path, needed, found));
+  // GDCM makes room for what the length says, and looks for it for long.
+  if (e.length > walker.bytes_behind(e))
+    throw IoError(fmt::format("{}: pixel data of {} bytes, the file has {} behind their head", path, e.length, found));
+}
+
+}  // namespace
+
+bool is_dicom(const std::string& path) {
+  // A DICOMDIR is a table of contents, not an image.
+  return has_mark(path) && std::filesystem::path(path).filename() != "DICOMDIR";
+}
+
+CheckedHeader check_dicom(const std::string& path, const ReadOptions& options) {
+  DicomWalker walker(path);
+  if (!has_mark(path)) throw InvalidInput(fmt::format("{}: no DICOM file: the mark DICM at byte 128 is missing", path));
+  DicomImage image;
   while (!walker.at_end()) {
     const Element e = walker.next();
-    if (e.tag == 0x00020010u) {
-      const std::string syntax = walker.text(e);
-      if (syntax == "1.2.840.10008.1.2.2" || syntax == "1.2.840.10008.1.2.1.99")
-        throw InvalidInput(
-            fmt::format("{}: DICOM transfer syntax {} (big endian or deflated) is not supported", path, syntax));
-      compressed = syntax != "1.2.840.10008.1.2" && syntax != "1.2.840.10008.1.2.1";
-      if (syntax == "1.2.840.10008.1.2") walker.set_implicit();
-    }
-    if (e.tag == 0x00280002u) samples = walker.number(e);
-    if (e.tag == 0x00280010u) rows = walker.number(e);
-    if (e.tag == 0x00280011u) columns = walker.number(e);
-    if (e.tag == 0x00280100u) bits = walker.number(e);
-    if (e.tag == 0x00280008u && walker.text(e) != "1" && !walker.text(e).empty())
-      throw InvalidInput(fmt::format("{}: DICOM of {} frames: supported is one a file", path, walker.text(e)));
+    take(path, e, walker, image);
     if (e.tag == kPixelData) {
-      if (samples != 1) throw InvalidInput(fmt::format("{}: {} samples a pixel: a volume has one", path, samples));
-      const std::array<std::int64_t, 2> size = {std::int64_t(columns), std::int64_t(rows)};
-      const std::uint64_t needed = checked_count(path, size, 8) * (bits / 8);
-      const std::uint64_t found = std::min<std::uint64_t>(e.length, walker.bytes_behind(e));
-      if (bits % 8 != 0 || bits == 0 || bits > 32)
-        throw InvalidInput(fmt::format("{}: {} bits a pixel: supported are 8, 16 and 32", path, bits));
-      if (!compressed && found < needed)
-        throw IoError(fmt::format("{}: {} bytes of pixel data expected, {} found", path, needed, found));
-      // GDCM makes room for what the length says, and looks for it for long.
-      if (!compressed && e.length > walker.bytes_behind(e))
-        throw IoError(
-            fmt::format("{}: pixel data of {} bytes, the file has {} behind their head", path, e.length, found));
-      if (compressed) walker.skip(e);
-      return {.size = {int(columns), int(rows), 1}, .type = {}, .data = {}};
+      check_image(path, image, options);
+      check_pixels(path, e, image, walker);
+      return {.size = {int(image.columns), int(image.rows), 1}, .type = {}, .data = {}};
     }
     walker.go_to(e.value);
     walker.skip(e);

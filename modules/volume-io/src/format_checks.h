@@ -30,9 +30,9 @@ struct CheckedHeader {
 [[nodiscard]] bool is_tiff(const std::string& path);
 [[nodiscard]] CheckedHeader check_tiff(const std::string& path);
 
-/// One slice.
+/// One slice. A spacing from the caller stands in for the file's.
 [[nodiscard]] bool is_dicom(const std::string& path);
-[[nodiscard]] CheckedHeader check_dicom(const std::string& path);
+[[nodiscard]] CheckedHeader check_dicom(const std::string& path, const ReadOptions& options);
 
 /// Files of a folder told by `is`, in the order in which people number them ("s2" before "s10").
 [[nodiscard]] std::vector<std::string> files_in_folder(const std::string& folder, bool (*is)(const std::string&));

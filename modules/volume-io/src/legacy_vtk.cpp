@@ -68,21 +68,23 @@ class VtkHeader {
 };
 
 ScalarType scalar_type(const std::string& path, const std::string& type) {
+  // A vtkIdType has eight bytes in memory, and four in what VTK writes and reads.
   static const std::map<std::string, ScalarType> types = {{"char", ScalarType::kInt8},
                                                           {"signed_char", ScalarType::kInt8},
                                                           {"unsigned_char", ScalarType::kUint8},
                                                           {"short", ScalarType::kInt16},
                                                           {"unsigned_short", ScalarType::kUint16},
                                                           {"int", ScalarType::kInt32},
+                                                          {"vtkidtype", ScalarType::kInt32},
                                                           {"unsigned_int", ScalarType::kUint32},
-                                                          {"float", ScalarType::kFloat32},
-                                                          {"double", ScalarType::kFloat64},
                                                           {"long", ScalarType::kInt64},
                                                           {"unsigned_long", ScalarType::kUint64},
                                                           {"long_long", ScalarType::kInt64},
                                                           {"unsigned_long_long", ScalarType::kUint64},
                                                           {"vtktypeint64", ScalarType::kInt64},
-                                                          {"vtktypeuint64", ScalarType::kUint64}};
+                                                          {"vtktypeuint64", ScalarType::kUint64},
+                                                          {"float", ScalarType::kFloat32},
+                                                          {"double", ScalarType::kFloat64}};
   const auto it = types.find(type);
   if (it == types.end())
     throw InvalidInput(

@@ -1,13 +1,15 @@
 #include "itk_fixture.h"
 
 #include <isolux/core/error.h>
+
 #include <glm/geometric.hpp>
+#include <optional>
 
 namespace isolux {
 namespace {
 using test::Itk;
 using test::kSpaced;
-using testing::HasSubstr;
+using ::testing::HasSubstr;
 
 TEST_F(Itk, StacksDicomSlicesByPosition) {
   // File names and instance numbers run against the positions.
@@ -56,7 +58,7 @@ TEST_F(Itk, RefusesUnevenMixedAndBrokenDicomFolders) {
   slice("3", "10\\20\\34");
   EXPECT_THAT(read(), HasSubstr("not evenly spaced"));
   slice("3", "10\\20\\38", "2");
-  EXPECT_THAT(read(), testing::AllOf(HasSubstr("2 DICOM series"), HasSubstr("1, 2")));
+  EXPECT_THAT(read(), ::testing::AllOf(HasSubstr("2 DICOM series"), HasSubstr("1, 2")));
   EXPECT_THROW((void)read_volume(folder_.file(".")), InvalidInput) << "the child's exception, by its type";
   slice("3", "10\\20\\38");
   EXPECT_EQ(read(), "");
@@ -64,7 +66,56 @@ TEST_F(Itk, RefusesUnevenMixedAndBrokenDicomFolders) {
   (void)folder_.write("3", whole.substr(0, whole.size() - 1));
   EXPECT_THAT(read(), HasSubstr("12 bytes of pixel data expected, 11 found"));
   (void)folder_.write("3", whole.substr(0, 300));
-  EXPECT_THAT(read(), testing::AnyOf(HasSubstr("ends early"), HasSubstr("the file has 300")));
+  EXPECT_THAT(read(), ::testing::AnyOf(HasSubstr("ends early"), HasSubstr("the file has 300")));
+}
+
+// The sample with another value in one element, or without it where there is none.
+std::string dicom_with(std::uint16_t element, const std::optional<std::string>& value, std::uint16_t group = 0x28) {
+  std::string bytes = test::dicom_sample({});
+  const std::size_t at = bytes.find(test::bytes_of<std::uint16_t>({group, element}), 132);
+  const auto length = std::size_t(static_cast<unsigned char>(bytes[at + 6]));
+  const std::string kind = bytes.substr(at + 4, 2);
+  return bytes.replace(at, 8 + length, value ? test::dicom_element(group, element, kind, *value) : "");
+}
+
+// GDCM crashes on palettes, and takes what it does not know for grey.
+TEST_F(Itk, RefusesDicomThatIsNotGrey) {
+  for (const std::string kind : {"PALETTE COLOR", "RGB", "MONOCHROME", "MONOCHROME3", ""})
+    EXPECT_THAT(refused("a.dcm", dicom_with(4, kind)),
+                HasSubstr("PhotometricInterpretation '" + kind + "': supported are MONOCHROME1 and MONOCHROME2"));
+  EXPECT_EQ(test::reading_error(folder_.write("a.dcm", dicom_with(4, "MONOCHROME1"))), "");
+}
+
+// GDCM takes them for the world's axes.
+TEST_F(Itk, RefusesDicomDirectionsThatAreNotAtRightAngles) {
+  for (const std::string text :
+       {"1\\0\\0\\1\\0\\0", "1\\0\\0\\.002\\1\\0", "1\\0\\0\\0\\0\\0", "1\\0\\0\\0\\1", "1\\0\\0\\x\\1\\0"})
+    EXPECT_THAT(refused("a.dcm", dicom_with(0x37, text, 0x20)), HasSubstr("directions at right angles are needed"));
+  const Volume volume = read_volume(folder_.write("a.dcm", dicom_with(0x37, "0\\2\\0\\ 0 \\+0\\-1", 0x20)));
+  EXPECT_EQ(volume.lattice().frame.axes[0], Vec3(0, 0.5, 0));
+  EXPECT_EQ(volume.lattice().frame.axes[1], Vec3(0, 0, -2));
+}
+
+// GDCM takes it for 1.
+TEST_F(Itk, RefusesDicomWithoutASpacingUnlessTheCallerGivesOne) {
+  for (const std::string text : {"0\\2", "2\\-1", "2", "nan\\2", ""}) {
+    EXPECT_THAT(refused("a.dcm", dicom_with(0x30, text)), HasSubstr("two numbers above 0 are needed"));
+    EXPECT_EQ(read_volume(folder_.file("a.dcm"), kSpaced).lattice().frame.spacing(), Vec3(0.5, 2, 4)) << text;
+  }
+  EXPECT_THAT(refused("a.dcm", dicom_with(0x30, {})), HasSubstr("without PixelSpacing"));
+  EXPECT_EQ(read_volume(folder_.file("a.dcm"), kSpaced).lattice().frame.spacing(), Vec3(0.5, 2, 4));
+}
+
+// GDCM takes it for 1.
+TEST_F(Itk, RefusesDicomOfTheSlopeZero) {
+  for (const std::string text : {"0", "0.0", " -0"})
+    EXPECT_THAT(refused("a.dcm", dicom_with(0x1053, text)), HasSubstr("RescaleSlope 0"));
+}
+
+TEST_F(Itk, RefusesDicomWithoutItsMark) {
+  const std::string bytes = test::dicom_sample({});
+  EXPECT_THAT(refused("a.dcm", bytes.substr(132)), HasSubstr("the mark DICM at byte 128 is missing"));
+  EXPECT_THAT(refused("a.dcm", std::string(132, 'x') + bytes.substr(132)), HasSubstr("the mark DICM"));
 }
 
 // GDCM takes seconds and gigabytes for it.

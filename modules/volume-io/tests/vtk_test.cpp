@@ -71,6 +71,7 @@ TEST_F(LegacyVtk, IsReadInEachTypeOfC) {
   EXPECT_EQ(type("signed_char", ramp_of(std::int8_t{})), ScalarType::kInt8);
   EXPECT_EQ(type("long_long", ramp_of(std::int64_t{})), ScalarType::kInt64);
   EXPECT_EQ(type("unsigned_long_long", ramp_of(std::uint64_t{})), ScalarType::kUint64);
+  EXPECT_EQ(type("vtkIdType", ramp_of(std::int32_t{})), ScalarType::kInt32) << "as VTK writes it";
   EXPECT_EQ(type("vtkTypeUInt64", ramp_of(std::uint64_t{})), ScalarType::kUint64);
 }
 

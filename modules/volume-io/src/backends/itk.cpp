@@ -49,7 +49,7 @@ Plan tiff_plan(const std::string& source, const std::vector<std::string>& files,
 
 Plan dicom_plan(const std::string& source, const std::vector<std::string>& files, const ReadOptions& options) {
   detail::CheckedHeader checked;
-  for (const auto& file : files) checked = detail::check_dicom(file);
+  for (const auto& file : files) checked = detail::check_dicom(file, options);
   checked.size.z = int(files.size());
   std::optional<double> gap;
   if (options.spacing) gap = options.spacing->z;
