@@ -7,10 +7,12 @@
 #include <fmt/format.h>
 #include <isolux/core/error.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <optional>
+#include <span>
 
 namespace isolux::detail {
 namespace {
@@ -34,6 +36,7 @@ std::string header_bytes(const std::string& path) {
 struct Version {
   bool second = false;
   bool big_endian = false;
+  bool pair = false;  ///< the values are in another file
 };
 
 // By the header's own size at its start and the magic word.
@@ -42,9 +45,12 @@ std::optional<Version> version(const std::string& bytes) {
     if (bytes.size() < kHeader1) return std::nullopt;
     const HeaderBytes header(bytes, big_endian);
     const auto size = header.get<std::int32_t>(0);
-    if (size == int(kHeader1) && bytes.compare(344, 4, std::string("n+1\0", 4)) == 0) return Version{false, big_endian};
-    if (size == int(kHeader2) && bytes.size() >= kHeader2 && bytes.compare(4, 4, std::string("n+2\0", 4)) == 0)
-      return Version{true, big_endian};
+    const bool second = size == int(kHeader2) && bytes.size() >= kHeader2;
+    if (size != int(kHeader1) && !second) continue;
+    const std::string magic = bytes.substr(second ? 4 : 344, 4);
+    const char digit = second ? '2' : '1';
+    if (magic == std::string{'n', '+', digit, '\0'}) return Version{second, big_endian, false};
+    if (magic == std::string{'n', 'i', digit, '\0'}) return Version{second, big_endian, true};
   }
   return std::nullopt;
 }
@@ -172,6 +178,12 @@ double millimetres(const std::string& path, int units) {
   }
 }
 
+// Along an axis of one sample nothing is spaced, and many writers leave it at 0.
+void fill_spacing(const std::array<std::int64_t, 3>& sizes, Fields& f) {
+  for (std::size_t a = 0; a < 3; ++a)
+    if (double& spacing = f.pixdim.at(a + 1); sizes.at(a) == 1 && spacing == 0.0) spacing = 1.0;
+}
+
 IndexToWorld frame_of(const std::string& path, const Fields& f) {
   require_spacing(path, std::span(f.pixdim).subspan(1));
   IndexToWorld frame;
@@ -197,7 +209,7 @@ std::array<std::int64_t, 3> sizes_of(const std::string& path, const Fields& f) {
   for (std::int64_t i = 1; i <= f.dim[0]; ++i) {
     const std::int64_t size = f.dim.at(std::size_t(i));
     if (i <= 3) sizes.at(std::size_t(i) - 1) = size;
-    if (i > 3 && size > 1)
+    if (i > 3 && size != 1)
       throw InvalidInput(
           fmt::format("{}: {} samples on axis {}: a volume has 3 axes, one number a voxel", path, size, i));
   }
@@ -229,8 +241,11 @@ NiftiHeader read_nifti_header(const std::string& path) {
   if (!found)
     throw InvalidInput(
         fmt::format("{}: no NIfTI file: supported are single files of version 1 ('n+1') and 2 ('n+2')", path));
-  const Fields f = fields(HeaderBytes(bytes, found->big_endian), found->second);
+  if (found->pair)
+    throw InvalidInput(fmt::format("{}: the header of a NIfTI pair (.hdr and .img): supported are single files", path));
+  Fields f = fields(HeaderBytes(bytes, found->big_endian), found->second);
   const auto sizes = sizes_of(path, f);
+  fill_spacing(sizes, f);
   const ScalarType type = scalar_type(path, f.datatype);
   const std::size_t width = bytes_per_scalar(type);
   if (f.bits != int(8 * width))
@@ -239,9 +254,9 @@ NiftiHeader read_nifti_header(const std::string& path) {
   header.lattice.frame = frame_of(path, f);
   header.data = {.file = path, .compressed = is_gzip(path), .more_allowed = true, .layout = {type, found->big_endian}};
   (header.data.compressed ? header.data.skipped : header.data.offset) = data_offset(path, f, found->second);
-  require_finite(path, "the intensity scaling", f.scale);
-  // A slope of 0 says that there is no scaling, whatever the intercept.
-  if (f.scale[0] != 0.0) {
+  // A slope of 0 or of no number says that there is no scaling, whatever the intercept.
+  if (f.scale[0] != 0.0 && std::isfinite(f.scale[0])) {
+    require_finite(path, "the intensity scaling", f.scale);
     header.data.slope = f.scale[0];
     header.data.intercept = f.scale[1];
   }

@@ -14,7 +14,7 @@ struct NiftiHeader {
   DataPlace data;
 };
 
-/// Tells NIfTI by its content.
+/// Tells NIfTI by its content, also the header of a .hdr/.img pair, which is not read.
 [[nodiscard]] bool is_nifti(const std::string& path);
 
 /// The world is the sform's where its code says scanner coordinates or there is no qform, else the qform's, as ITK and

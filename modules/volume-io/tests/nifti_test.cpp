@@ -90,9 +90,35 @@ std::string scaled(float slope, float intercept) {
   return bytes;
 }
 
-TEST_F(Nifti, HasNoScalingWhereTheSlopeIsZero) {
-  expect_ramp(read_volume(folder_.write("a.nii", scaled(0.0f, 5.0f))));
-  EXPECT_EQ(read_volume(folder_.file("a.nii")).stored_type, ScalarType::kInt16);
+TEST_F(Nifti, HasNoScalingWhereTheSlopeIsZeroOrNoNumber) {
+  for (const float slope : {0.0f, std::nanf(""), HUGE_VALF}) {
+    for (const float intercept : {5.0f, std::nanf("")}) {
+      expect_ramp(read_volume(folder_.write("a.nii", scaled(slope, intercept))));
+      EXPECT_EQ(read_volume(folder_.file("a.nii")).stored_type, ScalarType::kInt16);
+    }
+  }
+}
+
+TEST_F(Nifti, NeedsNoSpacingAlongAnAxisOfOneSample) {
+  for (const std::int16_t axes : {2, 3}) {
+    std::string bytes = test::nifti_sample();
+    test::put<std::int16_t>(bytes, 40, axes);
+    test::put<std::int16_t>(bytes, 46, axes == 3 ? 1 : 7);
+    test::put<float>(bytes, 88, 0.0f);
+    test::put<std::int16_t>(bytes, 254, 0);
+    const Volume volume = read_volume(folder_.write("a.nii", bytes));
+    EXPECT_EQ(volume.lattice().size, Index3(3, 2, 1));
+    EXPECT_EQ(volume.lattice().frame.spacing(), Vec3(0.5, 2, 1));
+  }
+}
+
+TEST_F(Nifti, IsRefusedAsAPair) {
+  std::string bytes = test::nifti_sample();
+  bytes.replace(344, 4, std::string("ni1\0", 4));
+  EXPECT_THAT(refused("a.hdr", bytes), HasSubstr("the header of a NIfTI pair"));
+  bytes = nifti2_sample();
+  bytes.replace(4, 4, std::string("ni2\0", 4));
+  EXPECT_THAT(refused("a.hdr", bytes), HasSubstr("the header of a NIfTI pair"));
 }
 
 TEST_F(Nifti, IsScaledHoweverSmallTheSlope) {
@@ -216,7 +242,7 @@ TEST_F(Nifti, IsRefusedWhereItIsHostile) {
   EXPECT_THAT(with(108, nan), HasSubstr("vox_offset is nan"));
   EXPECT_THAT(with(108, 1e30f), HasSubstr("vox_offset"));
   EXPECT_THAT(with(108, 353.0f), HasSubstr("24 bytes of data expected, 23 found"));
-  EXPECT_THAT(with(112, nan), HasSubstr("intensity scaling"));
+  EXPECT_THAT(with(116, nan), HasSubstr("intensity scaling"));
   EXPECT_THAT(with(280, nan), HasSubstr("the sform"));
 }
 
@@ -226,6 +252,10 @@ TEST_F(Nifti, IsRefusedAsATimeSeries) {
   test::put<std::int16_t>(bytes, 46, 1);
   test::put<std::int16_t>(bytes, 48, 2);
   EXPECT_THAT(refused("a.nii", bytes), HasSubstr("2 samples on axis 4"));
+  for (const std::int16_t size : {0, -5}) {
+    test::put<std::int16_t>(bytes, 48, size);
+    EXPECT_THAT(refused("a.nii", bytes), HasSubstr(fmt::format("{} samples on axis 4", size)));
+  }
 }
 
 }  // namespace
