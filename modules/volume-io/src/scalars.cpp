@@ -1,6 +1,7 @@
 #include "scalars.h"
 
 #include "number_text.h"
+#include "with_type.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -19,34 +20,6 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little, "x86-64 and little-endian Arm are what isolux is built for");
 constexpr std::size_t kChunk = 1 << 16;
-
-// Calls f with a value of the C++ type that `type` names.
-template <class F>
-auto with_type(ScalarType type, const F& f) {
-  switch (type) {
-    case ScalarType::kInt8:
-      return f(std::int8_t{});
-    case ScalarType::kUint8:
-      return f(std::uint8_t{});
-    case ScalarType::kInt16:
-      return f(std::int16_t{});
-    case ScalarType::kUint16:
-      return f(std::uint16_t{});
-    case ScalarType::kInt32:
-      return f(std::int32_t{});
-    case ScalarType::kUint32:
-      return f(std::uint32_t{});
-    case ScalarType::kInt64:
-      return f(std::int64_t{});
-    case ScalarType::kUint64:
-      return f(std::uint64_t{});
-    case ScalarType::kFloat32:
-      return f(float{});
-    case ScalarType::kFloat64:
-      return f(double{});
-  }
-  throw InvalidInput("unknown scalar type");
-}
 
 template <class T>
 void swap_bytes(std::span<std::byte> bytes) {

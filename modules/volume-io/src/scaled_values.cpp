@@ -1,11 +1,14 @@
 #include "scaled_values.h"
 
+#include "with_type.h"
+
 #include <fmt/format.h>
 #include <isolux/core/error.h>
 
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <span>
 
 namespace isolux::detail {
 namespace {
@@ -19,38 +22,12 @@ double number_of(const std::byte* bytes) {
   return double(number);
 }
 
-auto number_reader(ScalarType type) {
-  switch (type) {
-    case ScalarType::kInt8:
-      return number_of<std::int8_t>;
-    case ScalarType::kUint8:
-      return number_of<std::uint8_t>;
-    case ScalarType::kInt16:
-      return number_of<std::int16_t>;
-    case ScalarType::kUint16:
-      return number_of<std::uint16_t>;
-    case ScalarType::kInt32:
-      return number_of<std::int32_t>;
-    case ScalarType::kUint32:
-      return number_of<std::uint32_t>;
-    case ScalarType::kInt64:
-      return number_of<std::int64_t>;
-    case ScalarType::kUint64:
-      return number_of<std::uint64_t>;
-    case ScalarType::kFloat32:
-      return number_of<float>;
-    case ScalarType::kFloat64:
-      return number_of<double>;
-  }
-  throw InvalidInput("unknown scalar type");
-}
-
 }  // namespace
 
 std::vector<float> decode_scaled(ByteSource& source, const ScalarLayout& layout, std::uint64_t count, double slope,
                                  double intercept, const std::string& path, const Run& run) {
   const std::size_t width = bytes_per_scalar(layout.type);
-  const auto number = number_reader(layout.type);
+  const auto number = with_type(layout.type, [](auto zero) { return number_of<decltype(zero)>; });
   std::vector<float> values;
   values.reserve(count);
   std::vector<std::byte> piece(std::min<std::uint64_t>(count, kPiece) * width);

@@ -1,5 +1,7 @@
 #include "samples.h"
 
+#include <gmock/gmock.h>
+
 // teem, whose format NRRD is, reads names in either case and takes the first ":=" for a pair's.
 namespace isolux {
 namespace {
@@ -29,6 +31,17 @@ TEST(NrrdNames, OfCenteringsAreReadInEitherCase) {
   };
   EXPECT_EQ(origin("Node"), Vec3(1));
   EXPECT_EQ(origin("CELL"), Vec3(2));
+}
+
+TEST(NrrdNumbers, HaveOneSign) {
+  const test::TemporaryFolder folder;
+  const auto read = [&](const std::string& spacings, const std::string& skip) {
+    const std::string fields = "type: short\nencoding: raw\nendian: little\nspacings: " + spacings;
+    return folder.write("a.nrrd", header_of(fields + "\nbyte skip: " + skip + "\n"));
+  };
+  EXPECT_EQ(read_volume(read("+1 2e0 +.5", "+0")).lattice().frame.spacing(), Vec3(1, 2, 0.5));
+  EXPECT_THAT(test::reading_error(read("+-1 2 3", "0")), ::testing::HasSubstr("spacings"));
+  EXPECT_THAT(test::reading_error(read("1 2 3", "+-1")), ::testing::HasSubstr("byte skip"));
 }
 
 TEST(NrrdNames, OfPairsMayHaveColons) {
