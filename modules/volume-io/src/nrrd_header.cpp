@@ -20,7 +20,7 @@ namespace {
 constexpr std::int64_t kMostAxes = 16;
 
 template <class Number>
-std::optional<Number> whole_number(std::string_view text) {
+std::optional<Number> nrrd_integer(std::string_view text) {
   if (text.starts_with('+') && !text.starts_with("+-")) text.remove_prefix(1);
   Number value{};
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
@@ -85,14 +85,14 @@ class Interpreter {
   }
 
   void take_sizes() {
-    const auto dimension = whole_number<std::int64_t>(need("dimension"));
+    const auto dimension = nrrd_integer<std::int64_t>(need("dimension"));
     if (!dimension || *dimension < 1 || *dimension > kMostAxes)
       refuse("dimension", fmt::format("allowed is 1 to {}", kMostAxes));
     header_.axes.resize(std::size_t(*dimension));
     (void)need("sizes");
     const auto words = per_axis("sizes");
     for (std::size_t a = 0; a < words.size(); ++a) {
-      const auto size = whole_number<std::int64_t>(words[a]);
+      const auto size = nrrd_integer<std::int64_t>(words[a]);
       if (!size) refuse("sizes", "whole numbers are needed");
       header_.axes[a].size = *size;
     }
@@ -186,12 +186,12 @@ class Interpreter {
 
   void take_data_file(const ReadOptions& options) {
     if (find("line skip") != nullptr) {
-      const auto skip = whole_number<std::uint64_t>(text_.fields.at("line skip"));
+      const auto skip = nrrd_integer<std::uint64_t>(text_.fields.at("line skip"));
       if (!skip) refuse("line skip", "a whole number of at least 0 is needed");
       header_.line_skip = *skip;
     }
     if (find("byte skip") != nullptr) {
-      const auto skip = whole_number<std::int64_t>(text_.fields.at("byte skip"));
+      const auto skip = nrrd_integer<std::int64_t>(text_.fields.at("byte skip"));
       if (!skip || *skip < -1) refuse("byte skip", "a whole number of at least -1 is needed");
       header_.byte_skip = *skip;
       if (*skip == -1 && header_.encoding != NrrdEncoding::kRaw)
