@@ -29,13 +29,9 @@ std::vector<float> read_at(const Volume& volume, const Sites& sites, const Illum
 /// To where the root of the texels' mean square is `rms`.
 void scale_errors(double rms, IlluminationGrid& errors) {
   double squares = 0.0;
-  std::size_t count = 0;
-  for (const float error : errors.values) {
-    squares += double(error) * double(error);
-    count += error > 0.0f ? 1 : 0;
-  }
-  if (count == 0) return;
-  const auto by = float(rms / std::sqrt(squares / double(count)));
+  for (const float error : errors.values) squares += double(error) * double(error);
+  if (!(squares > 0.0)) return;
+  const auto by = float(rms / std::sqrt(squares / double(errors.values.size())));
   for (float& error : errors.values) error *= by;
 }
 

@@ -95,7 +95,7 @@ TEST(Target, IsWhatTexelsAreWrongBy) {
       EXPECT_GE(e, 0.0f) << way.name;
       stated += double(e) * double(e) / double(truth.values.size());
     }
-    EXPECT_NEAR(std::sqrt(stated), result.rmse_estimate, 0.1 * result.rmse_estimate) << way.name;
+    EXPECT_NEAR(std::sqrt(stated), result.rmse_estimate, 1e-4) << way.name;
   }
 }
 
