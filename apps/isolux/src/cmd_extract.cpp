@@ -9,7 +9,6 @@
 #include <isolux/resample/light_reader.h>
 #include <isolux/volume_io/atomic_file.h>
 
-#include <algorithm>
 #include <memory>
 
 #include "bake_options.h"
@@ -138,10 +137,8 @@ void report_mesh(const IsoMesh& mesh, const ExtractOptions& options, const std::
 
 /// Meshes are made of floats.
 void warn_coarse(const Lattice& lattice, const Session& session) {
-  constexpr double kEnough = 64.0;
-  const Vec3 resolution = vertex_resolution(lattice);
-  const double places = 1.0 / std::max({resolution.x, resolution.y, resolution.z});
-  if (places >= kEnough) return;
+  const double places = places_a_voxel(lattice);
+  if (places >= kPlacesEnough) return;
   session.warn(
       fmt::format("so far from the world's origin a mesh's float coordinates tell {:.2g} places a voxel apart: small "
                   "triangles may be empty",

@@ -32,13 +32,10 @@ struct ProbeOptions {
 /// A volume's box, a little wider: by what rounding errors may move a point on its faces.
 class Box {
  public:
-  explicit Box(const Lattice& lattice) : lattice_(lattice) {
+  explicit Box(const Lattice& lattice) : lattice_(lattice), margin_(vertex_margin(lattice)) {
     // Half a voxel at most: where floats tell less apart, only points that are known better are taken.
-    const Vec3 resolution = vertex_resolution(lattice);
-    const Vec3 of_mesh = glm::min(8.0 * resolution, 0.5);
+    const Vec3 of_mesh = glm::min(8.0 * vertex_resolution(lattice), 0.5);
     slack_ = glm::max(1e-6 * Vec3(lattice.size - 1), of_mesh);
-    // Vertices of our meshes keep so far from grid points, so that no triangle is flat (docs/extraction.md).
-    margin_ = glm::max(glm::min(16.0 * resolution, 0.25), std::ldexp(1.0, -10));
   }
 
   /// The point in index space, moved by the slack at most into the box; nothing outside it.
@@ -63,7 +60,7 @@ class Box {
  private:
   Lattice lattice_;
   Vec3 slack_;
-  Vec3 margin_;
+  Vec3 margin_;  ///< how far vertices of our meshes keep from grid points
 };
 
 /// Whether the level set of an isovalue that is known within `slack` was lit.

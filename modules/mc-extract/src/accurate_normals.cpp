@@ -21,7 +21,7 @@ void set_normals(const VolumeView& volume, OuterSide outer, const Run& run, std:
   const Mat3 to_index = glm::inverse(frame.axes);
   const Mat3 to_normal = frame.gradient_to_world() * (outer == OuterSide::kLower ? -1.0 : 1.0);
   // Vertices keep a margin from grid points, so half of it tells which coordinates lie on the grid.
-  const Vec3 tolerance = 0.5 * Vec3(mc::vertex_margin(volume.lattice()));
+  const Vec3 tolerance = 0.5 * Vec3(vertex_margin(volume.lattice()));
   const auto set_by = [&](const auto& gradient) {
     constexpr std::size_t kBlock = 4096;
     parallel_blocks(vertices, kBlock, run, "normals", [&](const Block& block) {

@@ -227,15 +227,13 @@ class BoxCap {
 
 void cap_box(IndexedMesh& mesh, const VolumeView& volume, const LevelSet& level_set) {
   // Which side of a square a vertex lies on is read from its position.
-  constexpr double kLeast = 64.0;
-  const Vec3 resolution = vertex_resolution(volume.lattice());
-  const double steps = 1.0 / std::max({resolution.x, resolution.y, resolution.z});
-  if (!(steps >= kLeast)) {
+  const double places = places_a_voxel(volume.lattice());
+  if (!(places >= kPlacesEnough)) {
     const Vec3& origin = volume.lattice().frame.origin;
     throw InvalidInput(fmt::format(
         "{}: so far out as its origin ({}, {}, {}) a mesh's float coordinates tell {:.2g} places a voxel apart; a cap "
         "needs {}: move the origin nearer to 0",
-        volume.name(), origin.x, origin.y, origin.z, steps, kLeast));
+        volume.name(), origin.x, origin.y, origin.z, places, kPlacesEnough));
   }
   BoxCap(mesh, volume, level_set).add();
 }

@@ -1,20 +1,9 @@
 #include "level_set.h"
 
-#include <isolux/mc_extract/vertex_resolution.h>
-
 #include <algorithm>
-#include <cmath>
 #include <glm/matrix.hpp>
 
 namespace isolux::mc {
-
-Vec3f vertex_margin(const Lattice& lattice) {
-  const Vec3 resolution = vertex_resolution(lattice);
-  Vec3f margin;
-  // In this order a resolution that is no number, of a frame beyond any use, gives the largest margin.
-  for (int a = 0; a < 3; ++a) margin[a] = float(std::max(std::min(0.25, 16.0 * resolution[a]), std::ldexp(1.0, -10)));
-  return margin;
-}
 
 LevelSet::LevelSet(const Lattice& lattice, const ExtractSettings& settings)
     : isovalue(settings.isovalue),

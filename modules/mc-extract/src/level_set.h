@@ -1,12 +1,9 @@
 #pragma once
 
 #include <isolux/mc_extract/extractor.h>
+#include <isolux/mc_extract/vertex_resolution.h>
 
 namespace isolux::mc {
-
-/// Of an edge along each index axis: 2^-10, or 16 times the vertex_resolution() along it where that is coarser, at most
-/// 1/4.
-[[nodiscard]] Vec3f vertex_margin(const Lattice& lattice);
 
 /// What every backend agrees on: which side a value is on, where a vertex lies, which way faces turn.
 ///

@@ -21,4 +21,17 @@ Vec3 vertex_resolution(const Lattice& lattice) {
   return resolution;
 }
 
+Vec3f vertex_margin(const Lattice& lattice) {
+  const Vec3 resolution = vertex_resolution(lattice);
+  Vec3f margin;
+  // In this order a resolution that is no number, of a frame beyond any use, gives the largest margin.
+  for (int a = 0; a < 3; ++a) margin[a] = float(std::max(std::min(0.25, 16.0 * resolution[a]), std::ldexp(1.0, -10)));
+  return margin;
+}
+
+double places_a_voxel(const Lattice& lattice) {
+  const Vec3 resolution = vertex_resolution(lattice);
+  return 1.0 / std::max({resolution.x, resolution.y, resolution.z});
+}
+
 }  // namespace isolux

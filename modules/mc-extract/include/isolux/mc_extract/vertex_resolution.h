@@ -10,4 +10,14 @@ namespace isolux {
 /// than 8 times as much. Cost: constant.
 [[nodiscard]] Vec3 vertex_resolution(const Lattice& lattice);
 
+/// How far vertices keep from grid points, so that no triangle is empty, as part of an edge along each index axis:
+/// 2^-10, or 16 times the vertex_resolution() along it where that is coarser, at most 1/4.
+[[nodiscard]] Vec3f vertex_margin(const Lattice& lattice);
+
+/// Places that float coordinates tell apart along a voxel, on the axis where they tell fewest.
+[[nodiscard]] double places_a_voxel(const Lattice& lattice);
+/// With fewer the margin would have to be more than a quarter of an edge: triangles may be empty, and no cap can tell
+/// which side of the box a vertex lies on.
+inline constexpr double kPlacesEnough = 64.0;
+
 }  // namespace isolux
