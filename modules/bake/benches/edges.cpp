@@ -91,12 +91,10 @@ struct Truth {
 };
 
 SampleSet trace_in(const Subject& subject, Sites sites, int rays, std::uint64_t seed,
-                   LampLight lamps = LampLight::kWithin) {
-  return tracers()
-      .create()
-      ->trace(subject.volume, subject.scene, std::move(sites),
-              {.rays = rays, .bounces = 0, .nets = RayNets::kInterleaved, .lamps = lamps}, {.seed = seed})
-      .samples;
+                   LampLight lamps = LampLight::kWithin, RaySpread spread = RaySpread::kEven) {
+  const TraceSettings settings{
+      .rays = rays, .bounces = 0, .nets = RayNets::kInterleaved, .lamps = lamps, .spread = spread};
+  return tracers().create()->trace(subject.volume, subject.scene, std::move(sites), settings, {.seed = seed}).samples;
 }
 
 Truth truth_of(const Subject& subject) {
@@ -139,7 +137,7 @@ Errors errors_of(const Subject& subject, const Truth& truth, const Scheme& schem
   const auto resampler = resamplers().create(scheme.resampler, scheme.settings);
   const SampleSet samples =
       trace_in(subject, samplers().create(scheme.sampler)->sample(subject.volume, request, {.seed = seed}), scheme.rays,
-               seed, resampler->lamps());
+               seed, resampler->lamps(), resampler->spread());
   const IlluminationGrid light = fill_unlit(resampler->resample(subject.volume, samples, texels, {}), {});
   const LightReader reader(subject.volume, light);
   Errors errors;
@@ -186,6 +184,7 @@ const int kRegistered = [] {
   const std::vector<std::pair<std::string, Scheme>> schemes{
       {"texels_16", {"texels", 1, 16, "direct", {}}},
       {"texels_16_denoised", {"texels", 1, 16, "direct", denoise}},
+      {"texels_16_denoised_even", {"texels", 1, 16, "direct", {{"denoise", "true"}, {"spread", "false"}}}},
       {"texels_128", {"texels", 1, 128, "direct", {}}},
       {"texels_128_denoised", {"texels", 1, 128, "direct", denoise}},
       {"fit_no_normals_4x4", {"stratified", 4, 4, "fit", no_normals}},

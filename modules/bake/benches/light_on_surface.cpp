@@ -49,9 +49,9 @@ struct Scheme {
   double texels = 1;  ///< a cell and axis
 };
 
-const SampleSet& samples_of(Case& c, const Scheme& scheme, const Lattice& texels) {
+const SampleSet& samples_of(Case& c, const Scheme& scheme, const Lattice& texels, RaySpread spread) {
   const std::string key = scheme.sampler + "/" + std::to_string(scheme.sites) + "/" + std::to_string(scheme.rays) +
-                          "/" + std::to_string(scheme.texels);
+                          "/" + std::to_string(scheme.texels) + "/" + std::to_string(int(spread));
   auto& set = c.sampled[key];
   if (set.size() == 0) {
     const auto sampler = samplers().create(scheme.sampler);
@@ -62,7 +62,7 @@ const SampleSet& samples_of(Case& c, const Scheme& scheme, const Lattice& texels
       request.count = std::size_t(scheme.sites * double(sites.size()));
       sites = sampler->sample(c.volume, request, {.seed = 3});
     }
-    set = trace(c.volume, std::move(sites), scheme.rays, 5);
+    set = trace(c.volume, std::move(sites), scheme.rays, 5, spread);
   }
   return set;
 }
@@ -77,7 +77,7 @@ void light_on_surface(benchmark::State& state, const Scheme& scheme) {
     errors = {};
     for (auto& c : cases()) {
       const Lattice texels = texels_of(c->volume, scheme.texels);
-      const SampleSet& samples = samples_of(*c, scheme, texels);
+      const SampleSet& samples = samples_of(*c, scheme, texels, resampler->spread());
       texel_count += texels.count();
       state.ResumeTiming();
       ResampledGrid partial = resampler->resample(c->volume, samples, texels, {});
@@ -111,6 +111,7 @@ const int kRegistered = [] {
       {"texels_128", {"texels", 1, 128, "direct", {}}},
       {"texels_16", {"texels", 1, 16, "direct", {}}},
       {"texels_16_denoised", {"texels", 1, 16, "direct", {{"denoise", "true"}}}},
+      {"texels_16_denoised_even", {"texels", 1, 16, "direct", {{"denoise", "true"}, {"spread", "false"}}}},
       {"plain_texels_64", {"texels", 1, 64, "direct", kPlain}},
       {"plain_texels_16", {"texels", 1, 16, "direct", kPlain}},
       {"plain_texels_512", {"texels", 1, 512, "direct", kPlain}},

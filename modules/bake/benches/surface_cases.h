@@ -126,12 +126,13 @@ inline std::vector<Vec3f> surface_points(const Volume& volume, float isovalue, s
   return points;
 }
 
-inline SampleSet trace(const Volume& volume, Sites sites, int rays, std::uint64_t seed) {
+inline SampleSet trace(const Volume& volume, Sites sites, int rays, std::uint64_t seed,
+                       RaySpread spread = RaySpread::kEven) {
   const Scene scene;
   return tracers()
       .create()
-      ->trace(volume, scene, std::move(sites), {.rays = rays, .bounces = 0, .nets = RayNets::kInterleaved},
-              {.seed = seed})
+      ->trace(volume, scene, std::move(sites),
+              {.rays = rays, .bounces = 0, .nets = RayNets::kInterleaved, .spread = spread}, {.seed = seed})
       .samples;
 }
 

@@ -40,10 +40,16 @@ BakeResult bake_paths(const Volume& volume, const Scene& scene, const BakeSettin
   TraceSettings trace = settings.trace;
   trace.nets = RayNets::kInterleaved;
   trace.lamps = resampler->lamps();
+  trace.spread = resampler->spread();
   TraceResult traced = tracer->trace(volume, scene, std::move(found.sites), trace, run);
   result.seconds["trace"] = watch.seconds();
   result.counters = traced.counters;
   result.least_rays = result.most_rays = std::uint32_t(settings.trace.rays);
+  if (!traced.rays.empty()) {
+    const auto [least, most] = std::minmax_element(traced.rays.begin(), traced.rays.end());
+    result.least_rays = *least;
+    result.most_rays = *most;
+  }
   finish_bake(volume, std::move(traced.samples), *resampler, texels, settings, run, result);
   if (!are_sites_own(*resampler, settings)) judge_texels(volume, scene, settings, run, result);
   return result;

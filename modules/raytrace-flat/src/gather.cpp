@@ -19,13 +19,11 @@ TraceCounters gather(const Volume& volume, const Sites& sites, const GatherSetti
   if (settings.rays < 1) throw InvalidInput(fmt::format("rays = {}: allowed is 1 and more", settings.rays));
   if (settings.first_ray < 0)
     throw InvalidInput(fmt::format("first_ray = {}: allowed is 0 and more", settings.first_ray));
-  if (!settings.keys.empty() && settings.keys.size() != sites.size())
-    throw InvalidInput(
-        fmt::format("{} keys for {} sites; there must be one of each", settings.keys.size(), sites.size()));
+  for (const std::uint32_t site : settings.only)
+    if (site >= sites.size()) throw InvalidInput(fmt::format("site {} of {}", site, sites.size()));
   const int last = settings.first_ray + settings.rays;
-  if (settings.nets == RayNets::kInterleaved &&
-      ((settings.first_ray > 0 && last > settings.all_rays) || !settings.keys.empty()))
-    throw InvalidInput("interleaved nets go without keys, and from the first ray on or in parts of all_rays");
+  if (settings.nets == RayNets::kInterleaved && settings.first_ray > 0 && last > settings.all_rays)
+    throw InvalidInput("interleaved nets go from the first ray on or in parts of all_rays");
   const wide::RayRange range{.first = std::size_t(settings.first_ray),
                              .count = std::size_t(settings.rays),
                              .all = std::size_t(std::max(settings.all_rays, 0))};
@@ -34,7 +32,8 @@ TraceCounters gather(const Volume& volume, const Sites& sites, const GatherSetti
                                    .rays_per_site = aimer.rays(),
                                    .sites_per_block = wide::sites_per_batch(aimer.rays()),
                                    .proofs = settings.question == RayQuestion::kAnyHit,
-                                   .values = settings.values};
+                                   .values = settings.values,
+                                   .only = settings.only};
   const auto question = settings.question == RayQuestion::kAnyHit ? wide::Question::kAnyHit : wide::Question::kFirstHit;
   TraceCounters total;
   std::mutex adding;
@@ -44,7 +43,7 @@ TraceCounters gather(const Volume& volume, const Sites& sites, const GatherSetti
     for (std::size_t i = 0; i < block.sites.size(); ++i) {
       if (i + kSitesAhead < block.sites.size()) prefetch(sites, block.sites[i + kSitesAhead]);
       const std::uint32_t site = block.sites[i];
-      aimer.append(sites, site, settings.keys.empty() ? site : settings.keys[site], batch.rays, batch.world);
+      aimer.append(sites, site, batch.rays, batch.world);
     }
     TraceCounters counters;
     wide::trace(block.field, block.occupancy, block.inner, question, batch.rays, counters);

@@ -73,9 +73,9 @@ void add_block(const LinkBlock& block, const TargetsRead& read, std::span<float>
 /// The links of what a gather hands over.
 class BlockMaker {
  public:
-  BlockMaker(const Sites& sites, std::span<const std::uint32_t> numbers, const LinkTargets* targets,
-             RayQuestion question, const LinkRound& round, std::uint64_t seed)
-      : sites_(sites), numbers_(numbers), targets_(targets), question_(question), round_(round), seed_(seed) {}
+  BlockMaker(const Sites& sites, const LinkTargets* targets, RayQuestion question, const LinkRound& round,
+             std::uint64_t seed)
+      : sites_(sites), targets_(targets), question_(question), round_(round), seed_(seed) {}
 
   [[nodiscard]] LinkBlock make(const GatheredRays& gathered) const {
     // Kept from block to block: growing each block's own would leave holes of its size in memory.
@@ -86,7 +86,7 @@ class BlockMaker {
     block.sites.reserve(gathered.sites.size());
     block.begins.reserve(gathered.sites.size() + 1);
     for (std::size_t place = 0; place < gathered.sites.size(); ++place) {
-      const std::uint32_t site = numbers_.empty() ? gathered.sites[place] : numbers_[gathered.sites[place]];
+      const std::uint32_t site = gathered.sites[place];
       block.sites.push_back(site);
       block.begins.push_back(std::uint32_t(found.size()));
       if (sites_.normals[site] == Vec3f(0.0f)) continue;
@@ -118,7 +118,6 @@ class BlockMaker {
   }
 
   const Sites& sites_;
-  std::span<const std::uint32_t> numbers_;
   const LinkTargets* targets_;
   RayQuestion question_;
   const LinkRound& round_;
@@ -140,17 +139,10 @@ TraceCounters trace_links(const Volume& volume, const Sites& sites, std::span<co
                                 .question = request.question,
                                 .all_rays = int(request.all_rays),
                                 .first_ray = int(request.first),
-                                .keys = numbers,
+                                .only = numbers,
                                 .nets = request.nets};
-  Sites some;
-  for (const std::uint32_t site : numbers) {
-    some.positions.push_back(sites.positions[site]);
-    some.isovalues.push_back(sites.isovalues[site]);
-    some.normals.push_back(sites.normals[site]);
-  }
-  const BlockMaker maker(sites, numbers, targets, request.question, round, run.seed);
-  return gather(volume, numbers.empty() ? sites : some, settings, run,
-                [&](const GatheredRays& gathered) { sink(maker.make(gathered)); });
+  const BlockMaker maker(sites, targets, request.question, round, run.seed);
+  return gather(volume, sites, settings, run, [&](const GatheredRays& gathered) { sink(maker.make(gathered)); });
 }
 
 LinkRound trace_round(const Volume& volume, const Sites& sites, std::span<const std::uint32_t> numbers,

@@ -23,16 +23,20 @@ bool is_dark(const Scene& scene) {
 
 }  // namespace
 
-TraceCounters add_sky_light(const Volume& volume, const Scene& scene, const TraceSettings& settings, const Run& run,
-                            SampleSet& samples) {
-  const auto rays = std::size_t(settings.rays);
-  const wide::NetMean mean(wide::SobolPoints(rays), rays);
+TraceCounters add_sky_light(const Volume& volume, const Scene& scene, const TraceSettings& settings,
+                            const SkyRays& asked, const Run& run, SampleSet& samples) {
   if (is_dark(scene)) return {};
-  const LinkRound round{.first = 0, .rays = rays, .order = mean.order(), .blocks = {}};
+  const auto first = std::size_t(asked.first);
+  const auto rays = std::size_t(asked.count);
+  const wide::NetMean mean(wide::SobolPoints(first + rays), rays, first, asked.share);
+  const LinkRound round{.first = first, .rays = rays, .order = mean.order(), .blocks = {}};
   const RayValues brought(scene, {.channels = std::size_t(samples.channels)});
-  const GatherSettings request{.rays = settings.rays,
+  const GatherSettings request{.rays = asked.count,
                                .outer = scene.outer,
                                .question = RayQuestion::kAnyHit,
+                               .all_rays = asked.all,
+                               .first_ray = asked.first,
+                               .only = asked.only,
                                .nets = settings.nets,
                                .values = settings.values};
   return gather(volume, samples.sites, request, run, [&](const GatheredRays& gathered) {

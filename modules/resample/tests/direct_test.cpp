@@ -237,5 +237,11 @@ TEST(Direct, AsksForLampsToldApartOnlyToDenoise) {
   EXPECT_EQ(resamplers().create("direct", {{"denoise", "true"}})->lamps(), LampLight::kToldApart);
 }
 
+TEST(Direct, AsksForRaysByNoiseOnlyToDenoise) {
+  EXPECT_EQ(resamplers().create("direct")->spread(), RaySpread::kEven);
+  EXPECT_EQ(resamplers().create("direct", {{"denoise", "true"}})->spread(), RaySpread::kByNoise);
+  EXPECT_EQ(resamplers().create("direct", {{"denoise", "true"}, {"spread", "false"}})->spread(), RaySpread::kEven);
+}
+
 }  // namespace
 }  // namespace isolux

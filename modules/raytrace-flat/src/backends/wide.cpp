@@ -6,6 +6,7 @@
 
 #include "bright_light.h"
 #include "bright_parts.h"
+#include "sky_by_noise.h"
 #include "sky_light.h"
 #include "sun_light.h"
 #include "trace_request.h"
@@ -30,26 +31,26 @@ class WideTracer final : public FlatTracer {
     TraceResult result;
     SampleSet& samples = result.samples;
     samples.sites = std::move(sites);
-    wide::light_and_calibrate(samples, run, [&](SampleSet& some, const Run& own) {
-      light(volume, scene, settings, own, some, result.counters);
+    result.rays = wide::light_and_calibrate(samples, run, [&](SampleSet& some, const Run& own, wide::SiteRays& rays) {
+      light(volume, scene, settings, own, some, rays, result.counters);
     });
     return result;
   }
 
  private:
   void light(const Volume& volume, const Scene& scene, const TraceSettings& settings, const Run& run,
-             SampleSet& samples, TraceCounters& counters) const {
+             SampleSet& samples, wide::SiteRays& rays, TraceCounters& counters) const {
     samples.channels = is_grey(scene) ? 1 : 3;
     wide::put_darkness(samples, std::size_t(settings.rays));
     if (settings.bounces == 0)
-      without_reflections(volume, scene, settings, run, samples, counters);
+      without_reflections(volume, scene, settings, run, samples, rays, counters);
     else
       with_reflections(volume, scene, settings, run, samples, counters);
   }
 
   /// What is seen of the sky, suns and other lamps each by what asks least; their sums and variances add up.
   void without_reflections(const Volume& volume, const Scene& scene, const TraceSettings& settings, const Run& run,
-                           SampleSet& samples, TraceCounters& counters) const {
+                           SampleSet& samples, wide::SiteRays& rays, TraceCounters& counters) const {
     Scene lamps = scene;
     std::erase_if(lamps.lights, [](const Light& light) { return std::holds_alternative<SunLight>(light); });
     if (!lamps.lights.empty()) by_paths(volume, lamps_of(lamps), settings, run, samples, nullptr, counters);
@@ -60,7 +61,12 @@ class WideTracer final : public FlatTracer {
       if (const auto* sun = std::get_if<SunLight>(&scene.lights[i]))
         add(counters, add_sun_light(volume, scene.outer, *sun, std::uint32_t(i), settings, run, samples));
     if (tells_apart(scene, settings, parts.bright() != nullptr)) wide::tell_lamps_apart(samples, samples);
-    add(counters, add_sky_light(volume, parts.soft(), settings, run, samples));
+    if (!rays.empty())
+      add(counters, add_sky_light_of(rays, volume, parts.soft(), settings, run, samples));
+    else if (can_spread(settings))
+      add(counters, add_sky_light_by_noise(volume, parts.soft(), settings, run, samples, rays));
+    else
+      add(counters, add_sky_light(volume, parts.soft(), settings, {.count = settings.rays}, run, samples));
   }
 
   void with_reflections(const Volume& volume, const Scene& scene, const TraceSettings& settings, const Run& run,

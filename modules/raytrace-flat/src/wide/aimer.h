@@ -51,11 +51,7 @@ class Aimer {
 
   /// Appends the rays of a site to the batch. \pre room for them
   void append(const Sites& sites, std::size_t site, Rays& rays, Directions& world) const {
-    append(sites, site, site, rays, world);
-  }
-  /// The same with random numbers keyed by `key` instead of the site's place.
-  void append(const Sites& sites, std::size_t site, std::size_t key, Rays& rays, Directions& world) const {
-    const SobolPoint shift = shift_of(sites, site, key);
+    const SobolPoint shift = shift_of(sites, site);
     const Vec3f& p = sites.positions[site];
     const Vec3f& n = sites.normals[site];
     const Pose pose{.position = {p.x, p.y, p.z},
@@ -68,8 +64,8 @@ class Aimer {
   }
 
  private:
-  [[nodiscard]] SobolPoint shift_of(const Sites& sites, std::size_t site, std::size_t key) const {
-    const NetPlaces::Place place = places_ ? places_->of(sites, site) : NetPlaces::Place{.net = key, .part = 0};
+  [[nodiscard]] SobolPoint shift_of(const Sites& sites, std::size_t site) const {
+    const NetPlaces::Place place = places_ ? places_->of(sites, site) : NetPlaces::Place{.net = site, .part = 0};
     const std::uint64_t bits = mix_bits(seed_ + place.net);
     // The parts of a net are its points with the upper bits of their numbers changed, which is a digital shift.
     const SobolPoint part = sobol_point(std::uint64_t(place.part) << part_bits_);

@@ -22,7 +22,8 @@ constexpr float kUnknownVariance = std::numeric_limits<float>::max();
 
 }  // namespace
 
-NetMean::NetMean(const SobolPoints& points, std::size_t rays, std::size_t first) : order_(rays) {
+NetMean::NetMean(const SobolPoints& points, std::size_t rays, std::size_t first, double share)
+    : order_(rays), share_(share) {
   // Neighbours on the curve share the small squares of the net, and still do after a digital shift.
   std::iota(order_.begin(), order_.end(), 0u);
   std::sort(order_.begin(), order_.end(), [&](std::uint32_t a, std::uint32_t b) {
@@ -47,12 +48,13 @@ void NetMean::add(const Moments& moments, std::size_t site, SampleSet& samples) 
   const auto n = double(order_.size());
   double variance = 0.0;
   for (std::size_t c = 0; c < channels; ++c) {
-    samples.radiance[site * channels + c] += float(moments.sum[int(c)] / n);
+    samples.radiance[site * channels + c] += float(share_ * (moments.sum[int(c)] / n));
     variance += moments.differences[int(c)] / double(channels);
   }
-  if (n > 1.0)
-    samples.variance[site] =
-        float(std::min(double(samples.variance[site]) + variance / (2.0 * (n - 1.0) * n), double(kUnknownVariance)));
+  if (n > 1.0) {
+    const double added = share_ * share_ * (variance / (2.0 * (n - 1.0) * n));
+    samples.variance[site] = float(std::min(double(samples.variance[site]) + added, double(kUnknownVariance)));
+  }
 }
 
 void put_darkness(SampleSet& samples, std::size_t rays) {
@@ -150,16 +152,21 @@ void calibrate_variance(SampleSet& samples, std::span<const std::size_t> probes,
 
 std::uint64_t probe_seed(std::uint64_t seed) { return mix_bits(seed ^ 0x9E3779B97F4A7C15ull); }
 
-void light_and_calibrate(SampleSet& samples, const Run& run, const LightSamples& light) {
-  light(samples, run);
+SiteRays light_and_calibrate(SampleSet& samples, const Run& run, const LightSamples& light) {
+  SiteRays rays;
+  light(samples, run, rays);
   const std::vector<std::size_t> probes = choose_probes(samples.sites);
   SampleSet again{
       .sites = some_of(samples.sites, probes), .channels = samples.channels, .radiance = {}, .variance = {}};
   Run other = run;
   other.seed = probe_seed(run.seed);
   other.progress = {};
-  light(again, other);
-  calibrate_variance(samples, probes, again);
+  SiteRays again_rays;
+  if (!rays.empty())
+    for (const std::size_t probe : probes) again_rays.push_back(rays[probe]);
+  light(again, other, again_rays);
+  calibrate_variance(samples, probes, again, rays);
+  return rays;
 }
 
 }  // namespace isolux::wide

@@ -17,8 +17,8 @@ namespace isolux::wide {
 /// Mean and variance of what the rays of a site bring, the rays being points of a net.
 class NetMean {
  public:
-  /// Of rays [first, first + rays).
-  NetMean(const SobolPoints& points, std::size_t rays, std::size_t first = 0);
+  /// Of rays [first, first + rays). What they bring is so large a share of what a site gets.
+  NetMean(const SobolPoints& points, std::size_t rays, std::size_t first = 0, double share = 1.0);
 
   /// Sum of one value a ray, and the sum of the squared differences of neighbouring strata.
   struct Moments {
@@ -37,6 +37,7 @@ class NetMean {
 
  private:
   std::vector<std::uint32_t> order_;  ///< along a curve of Morton's
+  double share_;
 };
 
 /// What light is added to: e = 0, of known error where there is a normal and more than one ray.
@@ -59,10 +60,14 @@ void calibrate_variance(SampleSet& samples, std::span<const std::size_t> probes,
 /// The seed of the second results.
 [[nodiscard]] std::uint64_t probe_seed(std::uint64_t seed);
 
-/// What lights samples whose sites are set, by the seed and the progress of a run.
-using LightSamples = std::function<void(SampleSet& samples, const Run& run)>;
+/// How many rays each site has; empty: all as many.
+using SiteRays = std::vector<std::uint32_t>;
+
+/// What lights samples whose sites are set, by the seed and the progress of a run. It says how many rays sites got, or
+/// takes as many as it is told.
+using LightSamples = std::function<void(SampleSet& samples, const Run& run, SiteRays& rays)>;
 
 /// Lights all samples, and the probes among them once more, to calibrate the variances.
-void light_and_calibrate(SampleSet& samples, const Run& run, const LightSamples& light);
+[[nodiscard]] SiteRays light_and_calibrate(SampleSet& samples, const Run& run, const LightSamples& light);
 
 }  // namespace isolux::wide

@@ -49,46 +49,65 @@ std::uint64_t morton(const Vec3f& position) {
 /// Isovalues with the sign that makes the inner side the higher one.
 float signed_isovalue(float isovalue, OuterSide outer) { return outer == OuterSide::kLower ? isovalue : -isovalue; }
 
+/// The sites that are wanted.
+class Wanted {
+ public:
+  Wanted(const Sites& sites, const BlockRequest& request) : sites_(sites), only_(request.only), outer_(request.outer) {}
+
+  [[nodiscard]] std::size_t size() const { return only_.empty() ? sites_.size() : only_.size(); }
+  [[nodiscard]] std::size_t number(std::size_t i) const { return only_.empty() ? i : only_[i]; }
+  [[nodiscard]] float level(std::size_t i) const { return signed_isovalue(sites_.isovalues[number(i)], outer_); }
+  [[nodiscard]] const Vec3f& position(std::size_t i) const { return sites_.positions[number(i)]; }
+
+ private:
+  const Sites& sites_;
+  std::span<const std::uint32_t> only_;
+  OuterSide outer_;
+};
+
 /// The part of the volume whose values lie between the sites' least and largest isovalue.
-double share_of_values(const Volume& volume, const Sites& sites) {
+double share_of_values(const Volume& volume, const Wanted& sites, OuterSide outer) {
   constexpr std::size_t kSample = 65536;
-  const auto [low, high] = std::minmax_element(sites.isovalues.begin(), sites.isovalues.end());
+  ValueRange levels{.low = sites.level(0), .high = sites.level(0)};
+  for (std::size_t i = 1; i < sites.size(); ++i)
+    levels = {.low = std::min(levels.low, sites.level(i)), .high = std::max(levels.high, sites.level(i))};
   const std::span<const float> values = volume.values.values();
   // An odd step meets all columns of a volume whose rows are a power of two.
   const std::size_t step = std::max<std::size_t>(1, values.size() / kSample) | 1;
   std::size_t within = 0;
   std::size_t count = 0;
   for (std::size_t i = 0; i < values.size(); i += step, ++count)
-    within += std::size_t(values[i] >= *low && values[i] <= *high);
+    within += std::size_t(signed_isovalue(values[i], outer) >= levels.low &&
+                          signed_isovalue(values[i], outer) <= levels.high);
   return double(within) / double(count);
 }
 
 /// How many buckets pay. A ray costs the more the wider its bucket, by some 3500 ns for all isovalues in one, and a
 /// bucket's occupancy some 40 ns a brick: with b buckets for a share s of all values, rays * 3500 * s / b + bricks * 40
 /// * b is least at this root.
-std::size_t bucket_count(const Volume& volume, const Sites& sites, const BlockRequest& request) {
+std::size_t bucket_count(const Volume& volume, const Wanted& sites, const BlockRequest& request) {
   constexpr double kWideOverBrick = 90.0;
   const double bricks = double(volume.lattice().count()) / 64.0;
   const double rays = double(sites.size()) * double(request.rays_per_site);
-  const double pays = std::sqrt(kWideOverBrick * share_of_values(volume, sites) * rays / bricks);
+  const double pays = std::sqrt(kWideOverBrick * share_of_values(volume, sites, request.outer) * rays / bricks);
   return std::size_t(std::clamp(pays, 1.0, double(kMostBuckets)));
 }
 
 /// Whether finding cubes of inner values costs less than proofs save: some 9 ns a cube and 50 ns a ray.
-bool has_proofs(const Volume& volume, const Sites& sites, const BlockRequest& request) {
+bool has_proofs(const Volume& volume, const Wanted& sites, const BlockRequest& request) {
   constexpr double kRaysACube = 0.2;
   const double cubes = double(volume.lattice().count()) / 8.0;
   return request.proofs && double(sites.size()) * double(request.rays_per_site) >= kRaysACube * cubes;
 }
 
 /// Rising thresholds that share the sites out evenly; the first is below all of them.
-std::vector<float> choose_thresholds(const Sites& sites, OuterSide outer, std::size_t buckets) {
+std::vector<float> choose_thresholds(const Wanted& sites, std::size_t buckets) {
   const std::size_t enough = std::max<std::size_t>(256 * buckets, 4096);
   const std::size_t step = std::max<std::size_t>(1, sites.size() / enough);
   std::vector<float> sample;
   float least = std::numeric_limits<float>::infinity();
   for (std::size_t i = 0; i < sites.size(); ++i) {
-    const float value = signed_isovalue(sites.isovalues[i], outer);
+    const float value = sites.level(i);
     least = std::min(least, value);
     if (i % step == 0) sample.push_back(value);
   }
@@ -108,8 +127,8 @@ struct BucketLevels {
   std::vector<float> highest;     ///< a little higher than any of the bucket
   std::vector<float> ceilings;    ///< higher than that by more than a rounding
 
-  BucketLevels(const Volume& volume, const Sites& sites, const BlockRequest& request)
-      : least(choose_thresholds(sites, request.outer, bucket_count(volume, sites, request))) {
+  BucketLevels(const Volume& volume, const Wanted& sites, const BlockRequest& request)
+      : least(choose_thresholds(sites, bucket_count(volume, sites, request))) {
     // Positions found by tracing are off their level set by a rounding, which must not cost them their bucket; and
     // whether a value is beyond an isovalue is to be no matter of rounding.
     const ValueRange range = request.values ? *request.values : value_range(volume);
@@ -117,7 +136,7 @@ struct BucketLevels {
     const float rounding = 0x1p-20f * std::max(std::abs(range.low), std::abs(range.high));
     for (const float value : least) thresholds.push_back(value - margin);
     float most = least.front();
-    for (const float isovalue : sites.isovalues) most = std::max(most, signed_isovalue(isovalue, request.outer));
+    for (std::size_t i = 0; i < sites.size(); ++i) most = std::max(most, sites.level(i));
     for (std::size_t b = 0; b < least.size(); ++b) {
       highest.push_back((b + 1 < least.size() ? least[b + 1] : most) + margin);
       ceilings.push_back(highest.back() + margin + rounding);
@@ -135,8 +154,8 @@ std::uint32_t number_of(Entry entry) { return std::uint32_t(entry); }
 class SiteBuckets {
  public:
   /// `least`: of each bucket's signed isovalues; none is below the first.
-  SiteBuckets(const Sites& sites, OuterSide outer, const std::vector<float>& least, const Index3& size, const Run& run)
-      : sites_(sites), outer_(outer), least_(least), counts_(block_count(sites.size(), kSitesAPass) * least.size()) {
+  SiteBuckets(const Wanted& sites, const std::vector<float>& least, const Index3& size, const Run& run)
+      : sites_(sites), least_(least), counts_(block_count(sites.size(), kSitesAPass) * least.size()) {
     // Whole bricks would do; large volumes keep what a number leaves of the place.
     const int bits = 3 * int(std::bit_width(unsigned(std::max({size.x, size.y, size.z}))));
     coarser_ = std::max(kPlaceBits, bits - kNumberBits);
@@ -144,7 +163,7 @@ class SiteBuckets {
     parallel_blocks(sites.size(), kSitesAPass, run, "", [&](const Block& block) {
       std::uint32_t* const counts = &counts_[block.index * least_.size()];
       for (std::size_t i = block.begin; i < block.end; ++i) {
-        const float value = signed_isovalue(sites_.isovalues[i], outer_);
+        const float value = sites_.level(i);
         if (value >= least_.front() && value < kBeyondAll) ++counts[rank.reached(value) - 1];
       }
     });
@@ -162,11 +181,11 @@ class SiteBuckets {
       std::array<std::size_t, kBucketsAGroup> next{};
       std::copy_n(&begins[block.index * kBucketsAGroup], kBucketsAGroup, next.begin());
       for (std::size_t i = block.begin; i < block.end; ++i) {
-        const float value = signed_isovalue(sites_.isovalues[i], outer_);
+        const float value = sites_.level(i);
         if (!(value >= low && value < high)) continue;
         std::size_t bucket = first_;
         while (bucket + 1 < last_ && value >= least_[bucket + 1]) ++bucket;
-        entries_[next[bucket - first_]++] = morton(sites_.positions[i]) >> coarser_ << kNumberBits | i;
+        entries_[next[bucket - first_]++] = morton(sites_.position(i)) >> coarser_ << kNumberBits | sites_.number(i);
       }
     });
     parallel_blocks(last_ - first_, 1, run, "", [&](const Block& block) {
@@ -213,8 +232,7 @@ class SiteBuckets {
     return begins;
   }
 
-  const Sites& sites_;
-  OuterSide outer_;
+  const Wanted& sites_;
   const std::vector<float>& least_;
   std::vector<std::uint32_t> counts_;  ///< of each part of the sites, by bucket
   int coarser_ = kPlaceBits;
@@ -232,15 +250,16 @@ void for_each_block(const Volume& volume, const Sites& sites, const BlockRequest
   if (lattice.count() > std::size_t(std::numeric_limits<std::int32_t>::max()) ||
       sites.size() > std::size_t(std::numeric_limits<std::uint32_t>::max()))
     throw InvalidInput(volume.name + ": the wide tracer takes volumes of at most 2^31 - 1 voxels");
-  if (sites.size() == 0) return;
+  const Wanted wanted(sites, request);
+  if (wanted.size() == 0) return;
   const FieldView field{volume.values.values().data(), lattice.size, request.outer};
-  const BucketLevels levels(volume, sites, request);
+  const BucketLevels levels(volume, wanted, request);
   CellCodes codes(field);
   std::optional<InnerCodes> inner_codes;
   std::optional<InnerCubes> inner;
-  if (has_proofs(volume, sites, request)) inner.emplace(inner_codes.emplace(field, levels.ceilings, run));
+  if (has_proofs(volume, wanted, request)) inner.emplace(inner_codes.emplace(field, levels.ceilings, run));
   Occupancy occupancy(codes);
-  SiteBuckets buckets(sites, request.outer, levels.least, lattice.size, run);
+  SiteBuckets buckets(wanted, levels.least, lattice.size, run);
   std::size_t done = 0;
   for (std::size_t bucket = 0; bucket < levels.least.size(); ++bucket) {
     if (bucket % kBucketsACode == 0) {
@@ -252,7 +271,7 @@ void for_each_block(const Volume& volume, const Sites& sites, const BlockRequest
     if (entries.empty()) continue;
     occupancy.build(codes, int(bucket % kBucketsACode), run);
     if (inner) inner->build(*inner_codes, int(bucket), run);
-    const auto all = double(sites.size());
+    const auto all = double(wanted.size());
     const Run part = part_of(run, double(done) / all, double(done + entries.size()) / all);
     parallel_blocks(entries.size(), request.sites_per_block, part, stage, [&](const Block& block) {
       std::vector<std::uint32_t> numbers;

@@ -40,11 +40,16 @@ class Direct final : public Resampler {
   struct Options {
     bool denoise = false;
     bool near_field = true;
+    bool spread = true;
 
     void describe(OptionVisitor& option) {
       option("denoise", denoise, {.help = "take the rays' noise out where the samples around say that it is noise"});
       option("near_field", near_field,
              {.help = "say beside the texels how open the volume itself is in front of a point, for reading between"});
+      option(
+          "spread", spread,
+          {.help = "with denoise, and no reflections: rays of a site more or fewer by the noise about it, as many on "
+                   "average"});
     }
   };
   explicit Direct(const Options& options) : options_(options) {}
@@ -71,6 +76,10 @@ class Direct final : public Resampler {
 
   [[nodiscard]] LampLight lamps() const override {
     return options_.denoise ? LampLight::kToldApart : LampLight::kWithin;
+  }
+
+  [[nodiscard]] RaySpread spread() const override {
+    return options_.denoise && options_.spread ? RaySpread::kByNoise : RaySpread::kEven;
   }
 
   [[nodiscard]] bool has_near_field() const override { return options_.near_field; }

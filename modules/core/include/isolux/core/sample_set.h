@@ -28,6 +28,12 @@ enum class LampLight : std::uint8_t {
   kToldApart  ///< SampleSet::lamps says it too, where there are lamps
 };
 
+/// How rays are spread over the sites.
+enum class RaySpread : std::uint8_t {
+  kEven,    ///< as many of each
+  kByNoise  ///< as many on average, more of sites about which a first quarter of the rays is noisy
+};
+
 /// Sites and the light found at them: e = irradiance/pi of the outer side (a radiance), see docs/theory.md.
 struct SampleSet {
   Sites sites;

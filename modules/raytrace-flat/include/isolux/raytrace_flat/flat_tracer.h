@@ -9,6 +9,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <vector>
 
 namespace isolux {
 
@@ -28,10 +29,14 @@ struct TraceSettings {
   RayNets nets = RayNets::kIndependent;  ///< of the first rays; `scalar` keeps them independent
   std::optional<ValueRange> values{};    ///< of the volume, where known: saves `wide` a pass
   LampLight lamps = LampLight::kWithin;  ///< told apart, the whole is the same to the bit; `scalar` leaves it within
+  /// Of those under the sky, without reflections, of interleaved nets, 16 and more. Lamps get theirs of each site;
+  /// `scalar` spreads evenly.
+  RaySpread spread = RaySpread::kEven;
 };
 
 struct TraceResult {
   SampleSet samples;
+  std::vector<std::uint32_t> rays{};  ///< of each site, where their numbers differ; empty: TraceSettings::rays
   TraceCounters counters;
 };
 

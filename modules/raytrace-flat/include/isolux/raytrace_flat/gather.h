@@ -27,7 +27,7 @@ struct GatherSettings {
   RayQuestion question = RayQuestion::kFirstHit;
   int all_rays = 0;                       ///< that a site will have had by and by; 0: no more than these
   int first_ray = 0;                      ///< rays [first_ray, first_ray + rays) of each site's sequence
-  std::span<const std::uint32_t> keys{};  ///< what random numbers are keyed by, one a site; empty: the site's number
+  std::span<const std::uint32_t> only{};  ///< numbers of the sites that are asked, each once; empty: all of them
   RayNets nets = RayNets::kIndependent;
   std::optional<ValueRange> values{};  ///< of the volume, where known: saves a pass
 };
@@ -48,17 +48,17 @@ struct GatheredRays {
   [[nodiscard]] bool escaped(std::size_t ray) const { return index_distance[ray] == kEscaped; }
 };
 
-/// Called from many threads, once for each site in all.
+/// Called from many threads, once for each site asked in all.
 using RaySink = std::function<void(const GatheredRays&)>;
 
-/// Traces settings.rays hemisphere rays from each site over the site's own level set, through the wide kernels: the one
-/// way in which whole sets of sites are traced fast. Directions are the points of a (0,m,2)-net with a random digital
-/// shift for each site, keyed by run.seed and the site's number: they do not depend on threads, other sites, or what
-/// the volume holds. Which sites arrive together does not depend on threads either. \pre require_usable(volume); sites
-/// inside its box with unit normals (sites of normal zero are given to the sink with directions that mean nothing).
-/// Interleaved, a site's shift also follows from its place among the sites; there are no keys then, and a first_ray
-/// only where all_rays says of which net these are a part. \throw Cancelled; InvalidInput for volumes of 2^31 voxels or
-/// more, or rays < 1
+/// Traces settings.rays hemisphere rays from each site asked over the site's own level set, through the wide kernels:
+/// the one way in which whole sets of sites are traced fast. Directions are the points of a (0,m,2)-net with a random
+/// digital shift for each site, keyed by run.seed and the site's number: they do not depend on threads, other sites, or
+/// what the volume holds. Which sites arrive together does not depend on threads either. \pre require_usable(volume);
+/// sites inside its box with unit normals (sites of normal zero are given to the sink with directions that mean
+/// nothing). Interleaved, a site's shift also follows from its place among all sites, and there is a first_ray only
+/// where all_rays says of which net these are a part. \throw Cancelled; InvalidInput for volumes of 2^31 voxels or
+/// more, rays < 1, or numbers that no site has
 [[nodiscard]] TraceCounters gather(const Volume& volume, const Sites& sites, const GatherSettings& settings,
                                    const Run& run, const RaySink& sink);
 

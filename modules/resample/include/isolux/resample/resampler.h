@@ -37,6 +37,9 @@ class Resampler {
   /// Whether resample() makes something of lamps' light told apart.
   [[nodiscard]] virtual LampLight lamps() const { return LampLight::kWithin; }
 
+  /// How the rays that make its samples are best spread over the sites.
+  [[nodiscard]] virtual RaySpread spread() const { return RaySpread::kEven; }
+
   /// Whether samples can be put into a grid part by part: what a sample gives to which texel depends on no other one.
   [[nodiscard]] virtual bool takes_parts() const { return false; }
   /// Puts more samples into `texels`, which begins as unlit_grid() of their channels; no two parts have samples for one
