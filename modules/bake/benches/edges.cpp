@@ -184,6 +184,7 @@ const int kRegistered = [] {
   const std::vector<std::pair<std::string, Scheme>> schemes{
       {"texels_16", {"texels", 1, 16, "direct", {}}},
       {"texels_16_denoised", {"texels", 1, 16, "direct", denoise}},
+      {"texels_16_denoised_blunt", {"texels", 1, 16, "direct", {{"denoise", "true"}, {"sharpen", "false"}}}},
       {"texels_16_denoised_even", {"texels", 1, 16, "direct", {{"denoise", "true"}, {"spread", "false"}}}},
       {"texels_128", {"texels", 1, 128, "direct", {}}},
       {"texels_128_denoised", {"texels", 1, 128, "direct", denoise}},

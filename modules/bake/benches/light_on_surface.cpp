@@ -111,6 +111,7 @@ const int kRegistered = [] {
       {"texels_128", {"texels", 1, 128, "direct", {}}},
       {"texels_16", {"texels", 1, 16, "direct", {}}},
       {"texels_16_denoised", {"texels", 1, 16, "direct", {{"denoise", "true"}}}},
+      {"texels_16_denoised_blunt", {"texels", 1, 16, "direct", {{"denoise", "true"}, {"sharpen", "false"}}}},
       {"texels_16_denoised_even", {"texels", 1, 16, "direct", {{"denoise", "true"}, {"spread", "false"}}}},
       {"plain_texels_64", {"texels", 1, 64, "direct", kPlain}},
       {"plain_texels_16", {"texels", 1, 16, "direct", kPlain}},

@@ -271,17 +271,20 @@ class Denoiser {
 
 }  // namespace
 
-std::vector<float> denoised_light(const Volume& volume, const SampleSet& samples, const Lattice& texels,
-                                  const Run& run) {
-  if (samples.lamps.empty()) return Denoiser(volume, texels, samples, samples.radiance, samples.variance, run).light();
-  std::vector<float> light = Denoiser(volume, texels, samples, samples.lamps, samples.lamps_variance, run).light();
-  std::vector<float> rest(samples.radiance.size());
+DenoisedLight denoised_light(const Volume& volume, const SampleSet& samples, const Lattice& texels, const Run& run) {
+  DenoisedLight light;
+  if (samples.lamps.empty()) {
+    light.rest = Denoiser(volume, texels, samples, samples.radiance, samples.variance, run).light();
+    return light;
+  }
+  light.lamps = Denoiser(volume, texels, samples, samples.lamps, samples.lamps_variance, run).light();
+  light.noisy_rest.resize(samples.radiance.size());
   std::vector<float> variance(samples.size());
-  for (std::size_t v = 0; v < rest.size(); ++v) rest[v] = samples.radiance[v] - samples.lamps[v];
+  for (std::size_t v = 0; v < light.noisy_rest.size(); ++v)
+    light.noisy_rest[v] = samples.radiance[v] - samples.lamps[v];
   for (std::size_t s = 0; s < variance.size(); ++s)
     variance[s] = std::max(0.0f, samples.variance[s] - samples.lamps_variance[s]);
-  rest = Denoiser(volume, texels, samples, rest, variance, run).light();
-  for (std::size_t v = 0; v < rest.size(); ++v) light[v] += rest[v];
+  light.rest = Denoiser(volume, texels, samples, light.noisy_rest, variance, run).light();
   return light;
 }
 

@@ -9,6 +9,13 @@
 
 namespace isolux {
 
+/// Light by sample and channel.
+struct DenoisedLight {
+  std::vector<float> rest;        ///< all of it, or what is not lamps' where that is told apart
+  std::vector<float> noisy_rest;  ///< what that was; empty where it is the samples' radiance
+  std::vector<float> lamps;       ///< empty where it is not told apart
+};
+
 /// The samples' light with their rays' noise taken out where the samples around say that it is noise. Linear functions
 /// of place, isovalue, normal and the volume's own openness are fitted to the nearest samples of like normals, for
 /// windows of several widths (Moon, Carr & Yoon, "Adaptive rendering based on weighted local regression", TOG 2014).
@@ -20,7 +27,7 @@ namespace isolux {
 /// edges included, and does not part the windows of the rest. The same bits for any number of threads. Fastest where
 /// samples lie at the `texels`' centres. Cost: 5 to 10 microseconds of a thread a sample whose neighbours are noisy, a
 /// tenth of that where they are not; 140 bytes. \throw InvalidInput as resample() does; Cancelled
-[[nodiscard]] std::vector<float> denoised_light(const Volume& volume, const SampleSet& samples, const Lattice& texels,
-                                                const Run& run);
+[[nodiscard]] DenoisedLight denoised_light(const Volume& volume, const SampleSet& samples, const Lattice& texels,
+                                           const Run& run);
 
 }  // namespace isolux

@@ -14,6 +14,7 @@
 #include "denoise.h"
 #include "near_field.h"
 #include "samples.h"
+#include "sharpen.h"
 #include "texel_near_field.h"
 
 namespace isolux::backends {
@@ -41,6 +42,7 @@ class Direct final : public Resampler {
     bool denoise = false;
     bool near_field = true;
     bool spread = true;
+    bool sharpen = true;
 
     void describe(OptionVisitor& option) {
       option("denoise", denoise, {.help = "take the rays' noise out where the samples around say that it is noise"});
@@ -50,6 +52,9 @@ class Direct final : public Resampler {
           "spread", spread,
           {.help = "with denoise, and no reflections: rays of a site more or fewer by the noise about it, as many on "
                    "average"});
+      option("sharpen", sharpen,
+             {.help = "with denoise: give texels a little more contrast than light has there, which "
+                      "reading between them takes away"});
     }
   };
   explicit Direct(const Options& options) : options_(options) {}
@@ -57,12 +62,14 @@ class Direct final : public Resampler {
   ResampledGrid resample(const Volume& volume, const SampleSet& samples, const Lattice& texels,
                          const Run& run) const override {
     require_samples(samples);
-    IlluminationGrid result = unlit_grid(texels, samples.channels);
-    if (options_.denoise) {
-      place(volume, samples.sites, denoised_light(volume, samples, texels, run), result, run);
-    } else {
-      place(volume, samples.sites, samples.radiance, result, run);
+    if (!options_.denoise) return told_by_bytes(placed(volume, samples, samples.radiance, texels, run));
+    const DenoisedLight light = denoised_light(volume, samples, texels, run);
+    IlluminationGrid result = placed(volume, samples, light.rest, texels, run);
+    if (options_.sharpen) {
+      const std::vector<float>& before = light.lamps.empty() ? samples.radiance : light.noisy_rest;
+      sharpen(result, placed(volume, samples, before, texels, run), run);
     }
+    if (!light.lamps.empty()) add(placed(volume, samples, light.lamps, texels, run), result);
     return told_by_bytes(std::move(result));
   }
 
@@ -91,6 +98,18 @@ class Direct final : public Resampler {
   }
 
  private:
+  /// One value a sample and channel at the samples' texels.
+  static IlluminationGrid placed(const Volume& volume, const SampleSet& samples, const std::vector<float>& light,
+                                 const Lattice& texels, const Run& run) {
+    IlluminationGrid grid = unlit_grid(texels, samples.channels);
+    place(volume, samples.sites, light, grid, run);
+    return grid;
+  }
+
+  static void add(const IlluminationGrid& part, IlluminationGrid& sum) {
+    for (std::size_t v = 0; v < sum.values.size(); ++v) sum.values[v] += part.values[v];
+  }
+
   static void place(const Volume& volume, const Sites& sites, const std::vector<float>& light, IlluminationGrid& result,
                     const Run& run) {
     const Lattice& texels = result.lattice;
