@@ -28,6 +28,8 @@ constexpr double kMargin = 1.15;
 /// Where iteration took no more, paths to the same error, ten to thirty times as many rays, are still a matter of
 /// seconds.
 constexpr std::uint64_t kMostRaysOnceMore = 20'000'000;
+/// A last round takes that much longer than was foreseen before it is worth a word.
+constexpr double kOvertime = 1.25;
 constexpr double kLeastSeconds = 1e-3;  ///< where a time is over before any ray
 
 BakeResult bake_paths(const Volume& volume, const Scene& scene, const BakeSettings& settings, FoundSites found,
@@ -65,7 +67,8 @@ bool keeps_too_few(const BakeSettings& settings, std::size_t sites) {
 bool keeps_rays(const BakeSettings& settings, const Scene& scene, std::size_t sites) {
   // Rays can be doubled only where all are kept.
   if (iterates(settings))
-    return !has_target(settings) || (!has_lamps(scene) && kept_rays_a_site(settings, sites, kFirstRays) == kFirstRays);
+    return !has_target(settings) ||
+           (!has_lamps(scene) && kept_rays_a_site(settings, sites, first_rays(settings)) == first_rays(settings));
   return has_target(settings) && settings.trace.bounces == 0 && settings.tracer.name == "wide" && !has_lamps(scene);
 }
 
@@ -101,7 +104,7 @@ BakeResult bake_towards_target(const Volume& volume, const Scene& scene, const B
   const Stopwatch watch;
   BakeSettings step = settings;
   step.target_rmse = step.target_seconds = 0.0;
-  step.trace.rays = kFirstRays;
+  step.trace.rays = first_rays(settings);
   for (;;) {
     const double before = watch.seconds();
     BakeResult result = bake_side(volume, scene, step, found, stages, run);
@@ -109,7 +112,8 @@ BakeResult bake_towards_target(const Volume& volume, const Scene& scene, const B
     const double rays = step.trace.rays;
     double factor = std::numeric_limits<double>::infinity();
     if (settings.target_rmse > 0.0) {
-      const double wanted = more_rays_for(settings.target_rmse, result);
+      // Of fewer rays all may miss what is bright.
+      const double wanted = rays < kFirstRays ? kMostAStep : more_rays_for(settings.target_rmse, result);
       if (wanted == 0.0 || wants_paths(settings, result)) return result;
       factor = std::clamp(wanted, kLeastAStep, kMostAStep);
     }
@@ -175,6 +179,14 @@ BakeResult bake_both(const Volume& volume, const Scene& scene, const BakeSetting
   return both_sides(std::move(outer), std::move(inner));
 }
 
+/// What counts against BakeSettings::target_seconds.
+double seconds_of_light(const BakeResult& result) {
+  double seconds = 0.0;
+  for (const auto& [stage, taken] : result.seconds)
+    if (stage != "resample") seconds += taken;
+  return seconds;
+}
+
 /// Iterations leave sweeps.
 BakeSettings as_done(BakeSettings settings, const BakeResult& result) {
   if (settings.trace.bounces != 0)
@@ -237,6 +249,9 @@ BakeResult bake(const Volume& volume, const Scene& scene, const BakeSettings& gi
   const auto light = scene.sides == LitSides::kBoth ? bake_both : bake_side;
   BakeResult result = light(volume, scene, settings, std::move(found), stages, run);
   settings.target_seconds = given.target_seconds;
+  const double seconds = seconds_of_light(result);
+  if (given.target_seconds > 0.0 && seconds > kOvertime * given.target_seconds)
+    result.seconds_beyond_time = seconds - given.target_seconds;
   result.settings = as_done(std::move(settings), result);
   return result;
 }

@@ -9,10 +9,17 @@ namespace isolux {
 
 /// Rays a site before anything is known: the smallest net that tells sites apart.
 inline constexpr int kFirstRays = 16;
+/// In a time, which may be too short for them.
+inline constexpr int kFirstRaysInATime = 4;
 
 /// Whether rays are to be spent until something is reached.
 [[nodiscard]] inline bool has_target(const BakeSettings& settings) {
   return settings.target_rmse > 0.0 || settings.target_seconds > 0.0;
+}
+
+/// Where has_target().
+[[nodiscard]] inline int first_rays(const BakeSettings& settings) {
+  return settings.target_seconds > 0.0 ? kFirstRaysInATime : kFirstRays;
 }
 
 /// Whether reflections are read from means of scattered sites (TexelMeans): a whole fit a sweep would cost more than

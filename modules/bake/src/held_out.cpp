@@ -11,11 +11,25 @@ namespace isolux {
 namespace {
 
 constexpr std::size_t kTexelsAHeldOut = 8;
-/// A place held out by so many rays of a bake.
-constexpr std::size_t kRaysAPlace = 16384;
-/// As many at least, if there are so many sites; paths of fewer cannot tell a bias from noise.
-constexpr std::size_t kFewestPlaces = 1024;
-constexpr std::size_t kMostPlaces = 4096;
+/// Where little light is wrong by much, as in small grids, few places miss it.
+constexpr double kFewestPlaces = 2048.0;
+constexpr double kMostPlaces = 4096.0;
+/// Of a place, if there are so many; four times as many towards errors below kRoughError, which noise of fewer hides.
+constexpr double kPathsOfEach = 64.0;
+constexpr double kRoughError = 0.012;
+/// A path by so many rays of a large bake; of a small one many more, if each site has many rays: what they say is not
+/// to be lost in noise of the paths.
+constexpr double kRaysAPath = 256.0;
+constexpr double kRaysAPathAtMost = 16.0;
+constexpr double kPathsARayOfASite = 512.0;
+constexpr double kFewestPaths = 0x1p16;
+/// Towards kRoughError and larger errors, and without one at most; those below it take them as their inverse square.
+constexpr double kPathsToRoughError = 0x1p18;
+constexpr double kMostPaths = 0x1p21;
+/// A site, at most, towards an error.
+constexpr double kPathsASite = 16.0;
+constexpr double kFewestPathsOfEach = 16.0;
+constexpr double kMostPathsOfEach = 1024.0;
 /// From this albedo on paths may be long, hundreds of rays in closed spaces: a quarter of both places and rays has to
 /// do.
 constexpr float kLasting = 0.95f;
@@ -25,6 +39,19 @@ int share_by_length(const Scene& scene) {
     return std::max({key.colour.x, key.colour.y, key.colour.z}) > kLasting;
   });
   return last ? 4 : 1;
+}
+
+/// Of all places together, of each side.
+double paths_to_judge_by(std::size_t sites, const BakeSettings& settings) {
+  if (!(settings.target_rmse > 0.0)) {
+    const double of_each = std::max(settings.trace.rays, 1);
+    const double rays = double(sites) * of_each;
+    const double fine = std::min(rays / kRaysAPathAtMost, of_each * kPathsARayOfASite);
+    return std::clamp(std::max(rays / kRaysAPath, fine), std::min(rays, kFewestPaths), kPathsToRoughError);
+  }
+  const double ratio = kRoughError / settings.target_rmse;
+  const double most = std::clamp(kPathsASite * double(sites), 2.0 * kPathsToRoughError, kMostPaths);
+  return std::clamp(kPathsToRoughError * ratio * ratio, kPathsToRoughError, most);
 }
 
 }  // namespace
@@ -72,16 +99,19 @@ std::vector<std::size_t> one_of_each_share(std::size_t count, std::size_t shares
 }
 
 std::size_t places_to_judge_by(std::size_t sites, const Scene& scene, const BakeSettings& settings) {
-  const std::size_t rays = sites * std::size_t(std::max(settings.trace.rays, 1));
-  const std::size_t by_rays = settings.target_rmse > 0.0 ? kMostPlaces : rays / kRaysAPlace;
-  return std::clamp(by_rays, kFewestPlaces, kMostPlaces) / std::size_t(share_by_length(scene));
+  const bool is_fine = settings.target_rmse > 0.0 && settings.target_rmse < kRoughError;
+  const double paths = paths_to_judge_by(sites, settings);
+  const double places = std::clamp(paths / (kPathsOfEach * (is_fine ? 4.0 : 1.0)), kFewestPlaces, kMostPlaces);
+  return std::size_t(std::min(places, paths / kFewestPathsOfEach)) / std::size_t(share_by_length(scene));
 }
 
-TraceSettings paths_to_judge_by(const Scene& scene, const BakeSettings& settings) {
+TraceSettings paths_of_each(std::size_t places, std::size_t sites, const Scene& scene, const BakeSettings& settings) {
+  const int share = share_by_length(scene);
+  const double paths = paths_to_judge_by(sites, settings) / double(share * share);
   TraceSettings judged = settings.trace;
   judged.nets = RayNets::kIndependent;
   judged.lamps = LampLight::kWithin;
-  judged.rays = (settings.target_rmse > 0.0 && settings.target_rmse < 0.012 ? 128 : 64) / share_by_length(scene);
+  judged.rays = int(std::clamp(paths / double(std::max<std::size_t>(places, 1)), kFewestPathsOfEach, kMostPathsOfEach));
   return judged;
 }
 

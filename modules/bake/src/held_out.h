@@ -42,10 +42,12 @@ class HeldOut {
 [[nodiscard]] std::vector<std::size_t> held_out_texels(const Lattice& texels, const TexelSiteMaker& sites,
                                                        std::size_t most, const Run& run);
 
-/// To judge a bake of `sites` sites: by how many places, its paths being then some twentieth of the time, and by what
-/// paths.
+/// To judge a bake of `sites` sites: by how many places, if there are so many, all paths together being some twentieth
+/// of the time of a large one.
 [[nodiscard]] std::size_t places_to_judge_by(std::size_t sites, const Scene& scene, const BakeSettings& settings);
-[[nodiscard]] TraceSettings paths_to_judge_by(const Scene& scene, const BakeSettings& settings);
+/// By what paths of each of `places` places: fewer places are lit by the more of them.
+[[nodiscard]] TraceSettings paths_of_each(std::size_t places, std::size_t sites, const Scene& scene,
+                                          const BakeSettings& settings);
 
 /// One number of each of `shares` equal shares of those below `count`. \pre shares <= count
 [[nodiscard]] std::vector<std::size_t> one_of_each_share(std::size_t count, std::size_t shares, const Run& run);

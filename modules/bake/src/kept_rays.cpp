@@ -11,6 +11,7 @@
 #include <cstdint>
 #include <glm/common.hpp>
 #include <glm/vector_relational.hpp>
+#include <limits>
 #include <utility>
 #include <variant>
 
@@ -33,6 +34,14 @@ constexpr double kSitesEnough = 2.0;
 constexpr int kEndsEnough = 16;
 /// Sites whose places are made again at once.
 constexpr std::size_t kSamplesAPart = std::size_t(1) << 18;
+
+/// Those whose rays say anything: that have a normal.
+std::vector<std::uint32_t> all_that_are_lit(std::span<const float> variances) {
+  std::vector<std::uint32_t> sites;
+  for (std::size_t i = 0; i < variances.size(); ++i)
+    if (variances[i] < std::numeric_limits<float>::max()) sites.push_back(std::uint32_t(i));
+  return sites;
+}
 
 Sites first_of(const Sites& sites, std::size_t count) {
   const auto last = std::ptrdiff_t(std::min(count, sites.size()));
@@ -68,7 +77,7 @@ KeptRays::KeptRays(const Volume& volume, const Scene& scene, const BakeSettings&
   resampler_ = stages.resamplers.create(settings_.resampler.name, settings_.resampler.settings);
   const Stopwatch watch;
   require_settings(settings_);
-  const int rays = has_target(settings_) ? kFirstRays : settings_.trace.rays;
+  const int rays = has_target(settings_) ? first_rays(settings_) : settings_.trace.rays;
   const int kept = has_target(settings_) ? rays : kept_rays_a_site(settings_, found.sites.size(), rays);
   if (kept == 0)
     throw InvalidInput(fmt::format("{} sites: even four rays of each take more than the {} bytes that kept rays may",
@@ -119,8 +128,10 @@ Solution KeptRays::solve(const Scene& scene, const Run& run, BakeResult& result)
 
 std::vector<std::uint32_t> KeptRays::wanting(const Solution& solution, double solve_seconds) const {
   RayBudget budget;
+  const auto traced = links_->rays();
+  const bool begins = *std::max_element(traced.begin(), traced.end()) < std::uint32_t(kFirstRays);
   const double error = standard_error(solution.samples.variance);
-  if (settings_.target_rmse > 0.0) {
+  if (settings_.target_rmse > 0.0 && !begins) {
     const double noise = squared_noise_for(settings_.target_rmse, reading_error(solution.samples));
     if (!(error * error > noise)) return {};
     // A little below, lest a last round serves a few sites.
@@ -137,6 +148,7 @@ std::vector<std::uint32_t> KeptRays::wanting(const Solution& solution, double so
     if (room < 0.02 * double(rays())) return {};
     budget.rays = std::min(budget.rays, room);
   }
+  if (begins && budget.rays >= double(rays())) return all_that_are_lit(solution.samples.variance);
   return sites_to_double(solution.samples.variance, links_->rays(), budget);
 }
 
@@ -151,13 +163,25 @@ BakeResult KeptRays::light(const Scene& scene, const Run& run) {
 
 double KeptRays::reading_error(const SampleSet& samples) const { return judge_ == nullptr ? 0.0 : judge_->of(samples); }
 
+BakeSettings KeptRays::settings_to_judge() const {
+  // Paths of places are some eight rays: an eighth of the time's, at the pace of the first rays, then goes into them.
+  constexpr double kShare = 1.0 / 64.0;
+  BakeSettings settings = settings_;
+  if (!(settings.target_seconds > 0.0)) return settings;
+  const double of_each = first_rays(settings) * settings.target_seconds / std::max(trace_seconds_, 1e-9);
+  settings.trace.rays = int(std::clamp(kShare * of_each, 1.0, 4096.0));
+  settings.target_rmse = 0.0;
+  return settings;
+}
+
 BakeResult KeptRays::last_light(const Scene& scene, const Run& run) && {
   require_kept();
+  const BakeSettings judging = settings_to_judge();
   // One ray a site says nothing of its noise, so that there is nothing to set the bias apart from.
   if (settings_.trace.bounces != 0 && (has_target(settings_) || settings_.trace.rays > 1)) {
     const Stopwatch watch;
-    judge_ = std::make_unique<const ReadingError>(volume_, scene, links_->sites(), settings_, run);
-    trace_seconds_ += watch.seconds();
+    judge_ = std::make_unique<const ReadingError>(volume_, scene, links_->sites(), judging, run);
+    judge_seconds_ = watch.seconds();
   }
   if (can_do_without_places(scene)) {
     const auto places = TexelPlaces::of(volume_.lattice(), texels_, links_->sites().positions);
@@ -168,7 +192,7 @@ BakeResult KeptRays::last_light(const Scene& scene, const Run& run) && {
   samples.sites = std::move(*links_).take_sites();
   finish_links();
   finish_bake(volume_, std::move(samples), *resampler_, texels_, settings_, run, result);
-  if (!are_sites_own(*resampler_, settings_)) judge_texels(volume_, scene, settings_, run, result);
+  if (!are_sites_own(*resampler_, settings_)) judge_texels(volume_, scene, judging, run, result);
   return result;
 }
 
@@ -228,7 +252,7 @@ SampleSet KeptRays::trace_and_solve(const Scene& scene, const Run& run, BakeResu
     solving = Stopwatch();
     solution = solve(scene, run, result);
   }
-  result.seconds["trace"] = trace_seconds_;
+  result.seconds["trace"] = trace_seconds_ + judge_seconds_;
   result.counters = links_->counters();
   add(result.counters, solution.counters);
   if (judge_ != nullptr) add(result.counters, judge_->counters());

@@ -10,17 +10,19 @@
 namespace isolux {
 namespace {
 
-constexpr std::size_t kSitesAHeldOut = 8;
+/// What is measured to be less may be so much by chance: this part of the uncertainty is about what to expect of
+/// something above 0 that was measured a little below it.
+constexpr double kLeastPart = 0.5;
 /// Of the squared error asked, what reading may be wrong by so that less noise can make up for it.
 constexpr double kMostReadingError = 0.75;
 
 HeldOut hold_out(const Volume& volume, const Scene& scene, const Sites& sites, const BakeSettings& settings,
                  const Run& run) {
-  const std::size_t part = (sites.size() + kSitesAHeldOut - 1) / kSitesAHeldOut;
-  std::vector<std::size_t> numbers =
-      one_of_each_share(sites.size(), std::min(places_to_judge_by(sites.size(), scene, settings), part), run);
+  const std::size_t most = places_to_judge_by(sites.size(), scene, settings);
+  std::vector<std::size_t> numbers = one_of_each_share(sites.size(), std::min(most, sites.size()), run);
   const Sites some = some_of(sites, numbers);
-  return {volume, scene, some, std::move(numbers), paths_to_judge_by(scene, settings), run};
+  const TraceSettings paths = paths_of_each(numbers.size(), sites.size(), scene, settings);
+  return {volume, scene, some, std::move(numbers), paths, run};
 }
 
 }  // namespace
@@ -33,7 +35,8 @@ double ReadingError::of(const SampleSet& samples) const {
   std::vector<float> variances;
   for (const std::size_t i : held_out_.numbers()) variances.push_back(samples.variance[i]);
   const double noise = standard_error(variances);
-  return std::sqrt(std::max(0.0, held_out_.squared_error(samples.radiance).mean - noise * noise));
+  const HeldOut::SquaredError squared = held_out_.squared_error(samples.radiance);
+  return std::sqrt(std::max(squared.mean - noise * noise, kLeastPart * squared.standard_error));
 }
 
 bool reading_allows(double target_rmse, double reading_error) {

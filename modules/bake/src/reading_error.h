@@ -7,14 +7,15 @@
 namespace isolux {
 
 /// What light is wrong by because reflections are read from texels, which the noise of its rays does not tell: more
-/// rays do not help. Some sites are held out, one of eight at most, and lit by paths.
+/// rays do not help. Some sites, of a small grid all, are lit by paths besides.
 class ReadingError {
  public:
   /// \pre settings.trace.bounces != 0 \throw Cancelled
   ReadingError(const Volume& volume, const Scene& scene, const Sites& sites, const BakeSettings& settings,
                const Run& run);
 
-  /// rms error of e at the sites that their variances leave unexplained; 0 where that would be below it by chance.
+  /// rms error of e at the sites that their variances leave unexplained, at least what may hide in the noise of the
+  /// paths.
   [[nodiscard]] double of(const SampleSet& samples) const;
   [[nodiscard]] const TraceCounters& counters() const { return held_out_.counters(); }
 

@@ -54,7 +54,8 @@ void judge_texels(const Volume& volume, const Scene& scene, const BakeSettings& 
   if (sites.size() == 0) return;
   std::vector<std::size_t> numbers(sites.size());
   std::iota(numbers.begin(), numbers.end(), std::size_t(0));
-  const HeldOut held_out(volume, scene, sites, std::move(numbers), paths_to_judge_by(scene, settings), run);
+  const TraceSettings paths = paths_of_each(sites.size(), result.sites, scene, settings);
+  const HeldOut held_out(volume, scene, sites, std::move(numbers), paths, run);
   const HeldOut::SquaredError squared = held_out.squared_error(read_at(volume, sites, result.light, run));
   // Few texels can agree by chance.
   result.rmse_estimate = std::sqrt(std::max(squared.mean, squared.standard_error));

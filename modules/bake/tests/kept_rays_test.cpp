@@ -268,7 +268,7 @@ TEST(KeptRays, EndInTime) {
   const BakeResult result = bake(volume, white(0.8f), settings, builtin_stages(), isolux::Run{});
   // A machine that is busy with other things may stretch the last round; ten times as long is no matter of luck.
   EXPECT_LT(watch.seconds(), 3.0);
-  EXPECT_GE(result.least_rays, 16u);
+  EXPECT_GE(result.least_rays, 4u);
 }
 
 TEST(Bake, CountsWhatItSkips) {

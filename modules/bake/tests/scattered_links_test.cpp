@@ -167,7 +167,7 @@ TEST(ScatteredLinks, EndInTime) {
   BakeSettings settings = fitted(8, kAllBounces);
   settings.target_seconds = 0.3;
   const Stopwatch watch;
-  EXPECT_GE(lit(volume, grey(0.8f, 0.0f, 1.0f), settings).least_rays, 16u);
+  EXPECT_GE(lit(volume, grey(0.8f, 0.0f, 1.0f), settings).least_rays, 4u);
   // A machine that is busy with other things may stretch the last round; ten times as long is no matter of luck.
   EXPECT_LT(watch.seconds(), 3.0);
 }

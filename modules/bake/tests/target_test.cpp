@@ -112,5 +112,43 @@ TEST(Target, EndsInTime) {
   EXPECT_GT(result.most_rays, 16u);
 }
 
+// Whatever way rays are spent, a time that is over at once ends with the fewest that tell an error, and says so.
+TEST(Target, AShortTimeTakesTheFewestRays) {
+  const Volume volume = read_volume("gen:gyroid:20");
+  Scene sunny;
+  sunny.lights.emplace_back(SunLight{});
+  for (const bool lit_by_a_sun : {false, true}) {
+    for (const BounceMethod method : {BounceMethod::kDefault, BounceMethod::kPaths}) {
+      for (const int bounces : {0, kAllBounces}) {
+        BakeSettings settings;
+        settings.trace.bounces = bounces;
+        settings.bounce_method = method;
+        settings.target_seconds = 1e-4;
+        settings.target_rmse = 1e-5;
+        const BakeResult result = bake(volume, lit_by_a_sun ? sunny : Scene{}, settings, builtin_stages(), {});
+        EXPECT_EQ(result.least_rays, 4u);
+        EXPECT_EQ(result.most_rays, 4u);
+        EXPECT_GT(result.rmse_estimate, 0.0);
+        EXPECT_GT(result.seconds_beyond_time, 0.0);
+      }
+    }
+  }
+}
+
+// Four rays can all miss what is bright: none is spent by need before there are sixteen, nor is an error believed.
+TEST(Target, ATimeThatSufficesTakesAsManyRaysAsNone) {
+  const Volume volume = read_volume("gen:gyroid:12");
+  for (const int bounces : {0, kAllBounces}) {
+    BakeSettings settings;
+    settings.trace.bounces = bounces;
+    settings.target_seconds = 60.0;
+    settings.target_rmse = 1.0;
+    const BakeResult result = bake(volume, {}, settings, builtin_stages(), {});
+    EXPECT_EQ(result.least_rays, 16u);
+    EXPECT_EQ(result.most_rays, 16u);
+    EXPECT_EQ(result.seconds_beyond_time, 0.0);
+  }
+}
+
 }  // namespace
 }  // namespace isolux::test

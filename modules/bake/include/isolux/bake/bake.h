@@ -60,7 +60,8 @@ struct BakeSettings {
   /// Rays until BakeResult::rmse_estimate is so small, or until so many seconds have passed since the bake began; 0 for
   /// none. They replace trace.rays. Iterated bounces, and no bounces under a uniform environment or a sky, without
   /// light sources, spend each ray where it takes away most error; others choose one number of rays for all sites from
-  /// a small bake. With a time the result depends on the machine's speed.
+  /// a small bake. With a time the result depends on the machine's speed; four rays of each site are traced, however
+  /// long that takes (BakeResult::seconds_beyond_time).
   double target_rmse = 0.0;
   double target_seconds = 0.0;
   bool wants_error_grid = false;  ///< fill BakeResult::error
@@ -97,8 +98,8 @@ struct BakeResult {
   /// with TexelSites::kNeeded, that of texels which are lit by paths besides; NaN if one ray a site says nothing of it.
   double rmse_estimate = 0.0;
   double noise = 0.0;  ///< standard error of the sites' rays, rms; 0 with TexelSites::kNeeded
-  /// What reading reflections from texels adds to that (kIterated; rms, 0 where it is lost in the noise): no ray takes
-  /// it away, more texels or kPaths do.
+  /// What reading reflections from texels adds to that, or may add unseen (kIterated; rms): it is measured by paths at
+  /// some sites, and at least half of what these may miss. No ray takes it away, more texels or kPaths do.
   double reading_error = 0.0;
   std::uint32_t least_rays = 0;  ///< a site
   std::uint32_t most_rays = 0;
@@ -109,6 +110,7 @@ struct BakeResult {
   /// reading_beyond_error, 1 where reflections were followed by paths to reach it (kIteratedOrPaths);
   /// sweeps_beyond_limit, 1 where iterated reflections had not settled when they ended.
   std::map<std::string, std::uint64_t> skipped;
+  double seconds_beyond_time = 0.0;       ///< beyond target_seconds, where it was exceeded by more than a quarter
   std::map<std::string, double> seconds;  ///< by stage: sites, trace, bounces (of kIterated), resample
 };
 

@@ -65,6 +65,8 @@ class KeptRays {
   [[nodiscard]] IlluminationGrid between_reflections(const SampleSet& samples, const Run& run);
   /// The sites that should get more rays; none if it is enough.
   [[nodiscard]] std::vector<std::uint32_t> wanting(const Solution& solution, double solve_seconds) const;
+  /// By which places and paths are chosen. In a time they are what it has room for.
+  [[nodiscard]] BakeSettings settings_to_judge() const;
   /// BakeResult::reading_error, as far as it is judged.
   [[nodiscard]] double reading_error(const SampleSet& samples) const;
 
@@ -80,6 +82,7 @@ class KeptRays {
   std::size_t one_of_ = 1;           ///< SolveSettings
   std::size_t ends_one_of_ = 1;      ///< SolveSettings
   double trace_seconds_ = 0.0;
+  double judge_seconds_ = 0.0;
   std::vector<float> last_;  ///< e of the last solution
   std::unique_ptr<const ReadingError> judge_;
 };
