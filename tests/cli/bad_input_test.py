@@ -198,7 +198,7 @@ class BadScene(CommandLineTest):
 class BadOutput(CommandLineTest):
     def test_a_grid_or_a_name_that_cannot_be_is_found_before_the_work(self):
         self.fail(1, "bake", "gen:sphere:8", "-o", "l.nrrd", "--texels", "20000x20000x20000",
-                  says=("20000x20000x20000 texels take 32000.0 GB", "this machine has"))
+                  says=("--texels 20000x20000x20000: that takes 32000.0 GB", "this machine has"))
         said = self.fail(1, "bake", "gen:sphere:8", "-o", "x" * 300 + ".nrrd", says="File name too long").stderr
         self.assertNotIn("texels from", said)
         self.succeed("bake", "gen:sphere:8", "--rays", 1, "--quiet", "-o", "x" * 250 + ".nrrd")

@@ -20,7 +20,8 @@ class Bench(CommandLineTest):
 
     def test_refuses_what_it_does_not_know(self):
         self.fail(2, "bench", "walk", says=("walk", "trace"))
-        self.fail(2, "bench", "intersect", "--threads", "0x2", says=("--threads", "0x2"))
+        for count in ("0x2", "0"):
+            self.fail(2, "bench", "intersect", "--threads", count, says=("--threads", f"'{count}'"))
         self.fail(2, "bench", "intersect", "--smoke", "--full", says=("--quick",))
 
 

@@ -233,6 +233,19 @@ class Render(CommandLineTest):
         self.assertEqual(width, 64 + 4 + 64)
 
 
+class Reports(CommandLineTest):
+    def test_say_what_was_asked_for(self):
+        self.succeed("bake", "gen:sphere:8", "-o", "l.nrrd", "--rays", 1, "--quiet")
+        shown = ("gen:sphere:8", "--iso", -0.25, "--light", "l.nrrd", "--outer", "higher", "--side", "inner", "--report", "report.json", "--quiet")
+        self.succeed("render", *shown, "-o", "i.png", "--size", "20x10", "--exposure", 1, "--eye", "0.5,-1,.5", "--samples", 2)
+        common = {"isovalue": -0.25, "light": "l.nrrd", "outer": "higher", "side": "inner", "seed": 1, "threads": 0}
+        self.assertEqual(self.report()["settings"], {**common, "exposure": 1, "eye": [0.5, -1, 0.5], "samples": 2, "size": [20, 10],
+                                                     "view": [30, 20], "mode": "global"})
+        self.succeed("extract", *shown, "-o", "m.ply", "--exact-light", "--rays", 3, "--min-component", 2)
+        self.assertEqual(self.report()["settings"], {**common, "exact_light": True, "rays": 3, "cap": False, "min_component": 2,
+                                                     "normals": "gradient", "backend": "marching_cubes"})
+
+
 class Convert(CommandLineTest):
     def test_keeps_values_and_frame(self):
         self.succeed("convert", "gen:gyroid:9", "a.nrrd")

@@ -78,8 +78,40 @@ class Messages(CommandLineTest):
         said = self.fail(2, "bake", "--", "gen:sphere:8", says="--output is required").stderr
         self.assertNotIn("not known", said)
 
+    def test_name_the_option_that_is_given_nothing(self):
+        """CLI11 takes the next word for the value: a report called --quiet, with progress."""
+        for words in (("info", "gen:sphere:4", "--report=", "--quiet"), ("bake", "gen:sphere:4", "-o=", "l.nrrd"), (*BAKE, "--rays=", "4"),
+                      ("bench", "intersect", "--output=", "results")):
+            empty = next(word for word in words if word.endswith("="))
+            self.fail(2, *words, says=(f"'{empty}'", "a value is missing"))
+
+    def test_tell_what_a_float_holds(self):
+        for words in (("render", "gone.nrrd", "-o", "i.png", "--iso", "1e40"), (*RENDER, "--exposure", "1e308"), (*RENDER, "--exposure", "nan")):
+            self.fail(2, *words, says=(f"'{words[-1]}'", "a number from -3.4e38 to 3.4e38"))
+
+    def test_name_what_no_memory_suffices_for(self):
+        for words in (("--samples", 1 << 40), ("--texels", "2147483647x2147483647x1")):
+            self.fail(1, *BAKE, *words, says=(f"{words[0]} {words[1]}", "GB of memory"))
+
+    def test_refuse_endings_of_no_format_alike(self):
+        for words in (("convert", "gone.nrrd", "a.mha"), ("extract", "gone.nrrd", "--iso", 0, "-o", "a.mha"),
+                      ("render", "gone.nrrd", "--iso", 0, "-o", "a.mha")):
+            self.fail(2, *words, says="a.mha")
+
 
 class WithoutEffect(CommandLineTest):
+    def test_are_words_of_a_light_that_is_not_given_or_not_shown(self):
+        self.succeed("bake", "gen:sphere:8", "-o", "light.nrrd", "--rays", 1, "--quiet")
+        light = ("--light", "light.nrrd")
+        for words, warned in ((("--exposure", 1), "--exposure"), ((*light, "--mode", "local", "--exposure", 0), "--exposure"),
+                              (("--force",), "--force"), ((*light, "--mode", "normal"), "--light"),
+                              ((*light, "--exposure", 1, "--force"), None), ((*light, "--mode", "both", "--exposure", 1), None),
+                              ((*light, "--mode", "normal", "--side", "outer"), None)):
+            said = self.succeed("render", "gen:sphere:8", "--iso", -0.3, "-o", "i.png", "--size", "20x10", *words).stderr
+            self.assertEqual(said.startswith(f"isolux: warning: {warned} has no effect"), warned is not None, (words, said))
+        said = self.succeed("extract", "gen:sphere:8", "--iso", -0.3, "-o", "m.ply", "--force", "--quiet").stderr
+        self.assertIn("--force has no effect", said)
+
     def test_is_the_scene_of_a_light_that_is_not_traced(self):
         self.succeed("bake", "gen:sphere:8", "-o", "light.nrrd", "--rays", 1, "--quiet")
         self.write("scene.json", "{}")

@@ -96,7 +96,14 @@ class DataFiles(CommandLineTest):
 
     def test_have_names_that_headers_can_give(self):
         for name in (" a.nhdr", "a\nb.nhdr"):
-            self.fail(1, "convert", "gen:sphere:4", name, says="cannot name its data file")
+            self.fail(2, "convert", "gen:sphere:4", name, says="cannot name its data file")
+
+    def test_of_a_header_that_is_replaced_stay_and_are_told_of(self):
+        self.succeed("convert", "gen:sphere:4", "d.nhdr")
+        told = self.succeed("convert", "gen:sphere:4", "d.nhdr", "--compress").stderr
+        self.assertIn("d.raw: the data of the header that was replaced", told)
+        self.assertTrue(os.path.exists(self.path("d.raw")))
+        self.assertNotIn("replaced", self.succeed("convert", "gen:sphere:4", "d.nhdr", "--compress").stderr)
 
 
 class DanglingLinks(CommandLineTest):

@@ -55,10 +55,6 @@ int parse(int argc, char** argv, CLI::App& app, Arguments& arguments, Session& s
                  "judge a tracer that is wrong or slow on purpose, as if it were the default")
       ->check(CLI::IsMember(ills));
   session.add_common_options(app);
-  app.remove_option(app.get_option("--threads"));  // here 0 is a number too
-  app.add_option("--threads", session.run.threads, "threads, 0 for all")
-      ->transform(whole_number(0, 4096))
-      ->type_name("T");
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& help) {

@@ -1,6 +1,8 @@
 #include "bake_command.h"
 
 #include <fmt/format.h>
+#include <isolux/core/error.h>
+#include <isolux/core/machine_memory.h>
 
 #include <utility>
 
@@ -54,6 +56,22 @@ void require_agreement(const BakeOptions& options, const BakeSettings& settings)
   if (!why.empty()) throw UsageError("--sites need: " + why);
 }
 
+/// \throw InvalidInput for what takes more memory than the machine has, whatever the volume
+void require_memory_for(const BakeOptions& options, const BakeSettings& settings) {
+  // Of each what is held at once at least: a texel's value; a site's place, isovalue, normal, light and variance.
+  const auto require = [](const std::string& word, double count, double bytes_of_each) {
+    const double bytes = count * bytes_of_each;
+    if (bytes > machine_memory())
+      throw InvalidInput(fmt::format("{}: that takes {:.1f} GB, and this machine has {:.1f} GB of memory", word,
+                                     bytes * 1e-9, machine_memory() * 1e-9));
+  };
+  if (settings.texels) {
+    const Index3& size = *settings.texels;
+    require("--texels " + options.texels, double(size.x) * double(size.y) * double(size.z), sizeof(float));
+  }
+  require(fmt::format("--samples {}", options.samples), double(options.samples), 9 * sizeof(float));
+}
+
 }  // namespace
 
 BakeSettings bake_settings(const BakeOptions& options, const Stages& stages) {
@@ -86,6 +104,7 @@ BakeSettings bake_settings(const BakeOptions& options, const Stages& stages) {
   require_choice(stages.tracers, settings.tracer);
   require_choice(stages.resamplers, settings.resampler);
   require_agreement(options, settings);
+  require_memory_for(options, settings);
   return settings;
 }
 

@@ -8,6 +8,7 @@
 
 #include "bake_command.h"
 #include "commands.h"
+#include "memory.h"
 #include "usage.h"
 #include "volume_options.h"
 
@@ -31,6 +32,7 @@ void report_bake(const BakeResult& result, Session& session) {
   report["rays_a_site"] = {{"least", result.least_rays}, {"most", result.most_rays}};
   report["skipped"] = result.skipped;
   report["skipped"]["searches_for_hits"] = result.counters.proven;
+  if (result.seconds_beyond_time > 0.0) report["seconds_beyond_time"] = result.seconds_beyond_time;
   report["link_bytes"] = result.link_bytes;
   report["texels"] = texels.count();
   report["texel_dims"] = {texels.size.x, texels.size.y, texels.size.z};
@@ -57,6 +59,11 @@ void say_what_was_done(const BakeResult& result, const Session& session) {
     session.warn(
         "reflections have not settled: light that hardly fades, as of an albedo near 1 in a closed space, may be far "
         "off");
+  if (result.seconds_beyond_time > 0.0)
+    session.warn(
+        fmt::format("--time {} is exceeded by {:.2g} s: {} rays of each of {} sites took so long; fewer texels "
+                    "(--texels-a-cell), --bounces 0 or an --iso-range take less",
+                    result.settings.target_seconds, result.seconds_beyond_time, result.least_rays, result.sites));
   if (result.skipped.contains("reading_beyond_error"))
     session.say(
         "read from texels, reflections would be wrong by more than the error asked: they are followed by paths");
@@ -90,12 +97,21 @@ void choose_size(const BakeOptions& options, const Volume& volume, const Scene& 
                           chosen.texels.y, chosen.texels.z, chosen.error, target));
 }
 
+/// What a bake takes memory for, and by which words it takes less.
+std::string wanted(const BakeOptions& options, const Volume& volume, const BakeSettings& settings) {
+  const Index3 texels = texel_lattice(volume.lattice(), settings).size;
+  const std::string grid = fmt::format("{}x{}x{} texels", texels.x, texels.y, texels.z);
+  if (options.samples > 0) return fmt::format("{} --samples and {}", options.samples, grid);
+  return grid + " and their sites: fewer (--texels, --texels-a-cell), --rays or an --iso-range take less";
+}
+
 void run_bake(const BakeOptions& options, Session& session) {
   BakeSettings settings = bake_settings(options, session.stages);
   const Volume volume = options.volume.read(session);
   const Scene scene = session.timed("read", [&] { return options.trace.scene(); });
   if (options.chooses_texels()) choose_size(options, volume, scene, settings, session);
-  BakeResult result = bake(volume, scene, settings, session.stages, session.run);
+  BakeResult result = with_memory_for(wanted(options, volume, settings),
+                                      [&] { return bake(volume, scene, settings, session.stages, session.run); });
   for (const auto& [stage, seconds] : result.seconds) session.add_seconds(stage, seconds);
   const double trace_seconds = std::max(result.seconds["trace"], 1e-9);
   report_bake(result, session);
@@ -166,7 +182,10 @@ void add_bake_command(CLI::App& program, Session& session) {
                   "all (default), or need: with --rmse few texels, the others being predicted; of scattered sites "
                   "(--resampler fit) half where the others say that light changes")
       ->check(CLI::IsMember({"all", "need"}));
-  command.add_option("--time", options->time, "seconds to spend on rays and bounces; with --rmse: at most")
+  command
+      .add_option("--time", options->time,
+                  "seconds to spend on rays and bounces; with --rmse: at most. Four rays a site are traced, however "
+                  "long they take")
       ->check(above_zero())
       ->type_name("SECONDS");
   session.writes(

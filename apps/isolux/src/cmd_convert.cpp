@@ -1,8 +1,11 @@
 #include <fmt/format.h>
+#include <isolux/core/error.h>
+#include <isolux/volume_io/read.h>
 #include <isolux/volume_io/scalar_type.h>
 #include <isolux/volume_io/write.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <memory>
 #include <string>
 #include <vector>
@@ -27,6 +30,35 @@ void warn_of_rounding(const StoredVolume& volume, const Session& session) {
                              volume.name, type));
 }
 
+/// \throw UsageError for a name that says no format that can be written
+std::vector<std::string> files_to_write(const std::string& output, const WriteOptions& options) {
+  try {
+    return files_written(output, options);
+  } catch (const InvalidInput& error) {
+    throw UsageError(fmt::format("OUT: {}", error.what()));
+  }
+}
+
+/// Where OUT is a header that is replaced, its data files: they may have other names than the new ones.
+std::vector<std::string> data_before(const std::string& output, const Session& session) {
+  std::error_code error;
+  if (!std::filesystem::exists(output, error) || std::filesystem::path(output).extension() != ".nhdr") return {};
+  return volume_files(output, {}, session.stages.readers);
+}
+
+/// They may be another header's, too: nothing is removed.
+void say_what_is_left(const std::vector<std::string>& before, const std::vector<std::string>& written,
+                      const Session& session) {
+  for (const std::string& file : before) {
+    const auto is_it = [&](const std::string& path) {
+      std::error_code error;
+      return std::filesystem::equivalent(path, file, error);
+    };
+    if (std::any_of(written.begin(), written.end(), is_it)) continue;
+    session.say(fmt::format("{}: the data of the header that was replaced; it is still there", file));
+  }
+}
+
 }  // namespace
 
 void add_convert_command(CLI::App& program, Session& session) {
@@ -41,7 +73,7 @@ void add_convert_command(CLI::App& program, Session& session) {
   command.add_option("OUT", options->output, "the file to write; its extension names the format")->required();
   // A volume may be written over itself: it has been read by then.
   const auto files = [given = options.get()] {
-    return given->output.empty() ? std::vector<std::string>() : files_written(given->output, given->write);
+    return given->output.empty() ? std::vector<std::string>() : files_to_write(given->output, given->write);
   };
   session.writes({.name = "OUT", .paths = files, .in_place = InPlace::kAllowed});
   command.add_flag("--compress", options->write.compress, "gzip, where the format has it");
@@ -50,7 +82,9 @@ void add_convert_command(CLI::App& program, Session& session) {
     session.on_run([options, &session] {
       const StoredVolume volume = options->volume.read_as_is(session);
       warn_of_rounding(volume, session);
+      const std::vector<std::string> before = data_before(options->output, session);
       session.timed("write", [&] { write_volume(volume, options->output, options->write); });
+      say_what_is_left(before, files_written(options->output, options->write), session);
     });
   });
 }

@@ -29,7 +29,7 @@ struct ExtractOptions {
   float isovalue = 0.0f;
   std::string output;
   std::string backend;
-  std::string outer;
+  OuterOption outer;
   std::vector<std::string> set;
   bool exact_light = false;
   bool cap = false;
@@ -91,8 +91,7 @@ NormalKind normal_kind(const std::string& name) {
 /// What the mesh's normals point to and whose light it shows: the outer side of the light or the scene (`lit`) or the
 /// one that the user calls so, or with --side inner the other.
 OuterSide facing(const ExtractOptions& options, OuterSide lit) {
-  OuterSide outer = lit;
-  if (!options.outer.empty()) outer = options.outer == "higher" ? OuterSide::kHigher : OuterSide::kLower;
+  const OuterSide outer = options.outer.or_else(lit);
   return options.side.or_outer() == LevelSetSide::kInner ? opposite(outer) : outer;
 }
 
@@ -121,7 +120,22 @@ struct Subject {
   const Volume* floats;  ///< null without light
 };
 
-void report_mesh(const IsoMesh& mesh, const ExtractOptions& options, const std::string& backend, Session& session) {
+nlohmann::json mesh_settings(const ExtractOptions& options, const std::string& backend, OuterSide outer) {
+  nlohmann::json result = {{"isovalue", options.isovalue},
+                           {"backend", backend},
+                           {"normals", options.normals},
+                           {"cap", options.cap},
+                           {"min_component", options.min_component},
+                           {"side", options.side.name()},
+                           {"outer", name_of(outer)},
+                           {"exact_light", options.exact_light}};
+  if (options.light.given()) result["light"] = options.light.path();
+  if (options.exact_light) result["rays"] = options.trace.settings().rays;
+  return result;
+}
+
+void report_mesh(const IsoMesh& mesh, const ExtractOptions& options, const std::string& backend, OuterSide outer,
+                 Session& session) {
   const MeshMeasures measures = session.timed("measure", [&] { return measure_mesh(mesh); });
   session.report["area"] = measures.area;
   session.report["volume"] = measures.volume;
@@ -131,7 +145,7 @@ void report_mesh(const IsoMesh& mesh, const ExtractOptions& options, const std::
   session.report["zero_area_triangles"] = measures.zero_area_triangles;
   session.report["triangles"] = mesh.n_faces();
   session.report["vertices"] = mesh.n_vertices();
-  session.report["settings"] = {{"isovalue", options.isovalue}, {"backend", backend}, {"normals", options.normals}};
+  session.report["settings"] = mesh_settings(options, backend, outer);
   session.say(fmt::format("{} triangles, {} vertices", mesh.n_faces(), mesh.n_vertices()));
 }
 
@@ -150,6 +164,7 @@ void extract(const Subject& subject, const BackendChoice& choice, const ExtractO
   std::optional<LightFile> light;
   if (options.light.given()) light = options.light.read(*subject.floats, session);
   const Scene scene = scene_for(options, light);
+  options.light.warn_of_no_effect(session);
   if (!options.exact_light && options.trace.says_how_to_trace())
     session.warn("--bounces, --quality, --rays and --tracer have no effect without --exact-light");
   if (!options.exact_light && light && options.trace.scene_given())
@@ -183,7 +198,9 @@ void extract(const Subject& subject, const BackendChoice& choice, const ExtractO
   session.timed("write", [&] {
     write_atomically_by_name(options.output, [&](const std::string& path) { write_mesh(mesh, colours, path); });
   });
-  report_mesh(mesh, options, session.stages.extractors.info(choice.name).name, session);
+  // What is called outside, whichever side is shown.
+  const OuterSide outside = options.side.or_outer() == LevelSetSide::kInner ? opposite(outer) : outer;
+  report_mesh(mesh, options, session.stages.extractors.info(choice.name).name, outside, session);
 }
 
 void run_extract(const ExtractOptions& options, Session& session) {
@@ -222,10 +239,8 @@ void add_extract_command(CLI::App& program, Session& session) {
       "--exact-light", options->exact_light,
       "trace the light at the vertices; with --light too, that light's scene is taken and half the rays do");
   options->trace.add_to(command, session);
-  command
-      .add_option("--outer", options->outer,
-                  "the side that is outside: lower or higher values (default: what the light or scene says)")
-      ->check(CLI::IsMember({"lower", "higher"}));
+  options->outer.add_to(command,
+                        "the side that is outside: lower or higher values (default: what the light or scene says)");
   command.add_flag("--cap", options->cap, "close the surface where it meets the box");
   command.add_option("--min-component", options->min_component, "leave out connected parts of fewer triangles")
       ->transform(whole_number(0, std::uint64_t(1) << 32))

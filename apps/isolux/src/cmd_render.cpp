@@ -38,8 +38,8 @@ struct RenderOptions {
   std::string eye;
   std::string mode;
   int samples = 3;
-  double exposure = 0.0;
-  std::string outer;
+  std::optional<double> exposure;
+  OuterOption outer;
 };
 
 /// The surface brighter by so many stops; what is seen beside it stays.
@@ -97,9 +97,31 @@ void require_png(const std::string& path, int width, int height) {
   }
 }
 
+void warn_of_no_effect(const RenderOptions& options, const std::string& mode, const Session& session) {
+  options.light.warn_of_no_effect(session);
+  if (options.exposure && mode != "global" && mode != "both")
+    session.warn(fmt::format("--exposure has no effect with --mode {}: it is of global light", mode));
+  if (mode == "normal" && options.light.given() && !options.side.given())
+    session.warn("--light has no effect with --mode normal");
+}
+
+nlohmann::json picture_settings(const RenderOptions& options, const RenderSettings& settings, const std::string& mode) {
+  nlohmann::json result = {{"isovalue", options.isovalue},
+                           {"size", {settings.width, settings.height}},
+                           {"view", parse_numbers("--view", options.view, 2)},
+                           {"mode", mode},
+                           {"samples", options.samples},
+                           {"outer", name_of(settings.outer)},
+                           {"exposure", options.exposure.value_or(0.0)}};
+  if (!options.eye.empty()) result["eye"] = parse_numbers("--eye", options.eye, 3);
+  if (options.light.given()) result["light"] = options.light.path();
+  if (options.side.given()) result["side"] = options.side.name();
+  return result;
+}
+
 void run_render(const RenderOptions& options, Session& session) {
   const auto [width, height] = parse_size2("--size", options.size);
-  const auto view = parse_numbers("--view", options.view, 2);
+  static_cast<void>(parse_numbers("--view", options.view, 2));
   if (!options.eye.empty()) static_cast<void>(parse_numbers("--eye", options.eye, 3));
   const std::string mode = !options.mode.empty() ? options.mode : options.light.given() ? "global" : "local";
   if ((mode == "global" || mode == "both") && !options.light.given()) {
@@ -107,6 +129,7 @@ void run_render(const RenderOptions& options, Session& session) {
   }
   require_png(options.output, width, height);
   if (mode == "both") require_png(options.output, 2 * width + kGap, height);
+  warn_of_no_effect(options, mode, session);
   const Volume volume = options.volume.read(session);
   std::optional<LightFile> light;
   if (options.light.given()) light = options.light.read(volume, session);
@@ -117,7 +140,7 @@ void run_render(const RenderOptions& options, Session& session) {
   RenderSettings settings{
       .width = width, .height = height, .supersampling = options.samples, .isovalue = options.isovalue};
   settings.outer = light ? light_outer(*light) : OuterSide::kLower;
-  if (!options.outer.empty()) settings.outer = options.outer == "higher" ? OuterSide::kHigher : OuterSide::kLower;
+  settings.outer = options.outer.or_else(settings.outer);
   settings.only = options.side.given();
   const Camera camera = camera_of(options, volume.lattice(), double(width) / height);
   const auto draw = [&](const Shader& shader) { return render(volume, camera, settings, shader, session.run); };
@@ -125,14 +148,13 @@ void run_render(const RenderOptions& options, Session& session) {
     if (mode == "normal") return draw(normal_shader());
     if (mode == "local") return draw(local_shader(albedo));
     const Shader shader = baked_shader(volume, *light, options, settings.outer, session.run);
-    Image global = draw(exposed(shader, options.exposure));
+    Image global = draw(exposed(shader, options.exposure.value_or(0.0)));
     return mode == "both" ? side_by_side(draw(local_shader(albedo)), global, kGap, Vec3f(1.0f)) : global;
   });
   session.timed("write", [&] {
     write_atomically_by_name(options.output, [&](const std::string& path) { write_png(image, path); });
   });
-  session.report["settings"] = {
-      {"isovalue", options.isovalue}, {"size", {width, height}}, {"view", view}, {"mode", mode}};
+  session.report["settings"] = picture_settings(options, settings, mode);
 }
 
 }  // namespace
@@ -167,10 +189,7 @@ void add_render_command(CLI::App& program, Session& session) {
   command.add_option("--exposure", options->exposure, "stops by which the global light is made brighter")
       ->check(finite_number())
       ->type_name("STOPS");
-  command
-      .add_option("--outer", options->outer,
-                  "the side that is outside: lower or higher values (default: what the light says)")
-      ->check(CLI::IsMember({"lower", "higher"}));
+  options->outer.add_to(command, "the side that is outside: lower or higher values (default: what the light says)");
   session.add_common_options(command);
   command.callback([options, &session] { session.on_run([options, &session] { run_render(*options, session); }); });
 }

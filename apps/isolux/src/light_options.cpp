@@ -16,6 +16,10 @@ void LightOptions::add_to(CLI::App& command, Session& session) {
   command.add_flag("--force", force_, "use the light of another volume all the same");
 }
 
+void LightOptions::warn_of_no_effect(const Session& session) const {
+  if (force_ && !given()) session.warn("--force has no effect without --light");
+}
+
 void warn_outside_light(const LightFile& light, float isovalue, const Session& session) {
   const LightDetail& detail = light.grid.detail;
   if (detail.covers(double(isovalue))) return;
@@ -31,6 +35,17 @@ void SideOption::add_to(CLI::App& command, const std::string& help) {
 std::optional<LevelSetSide> SideOption::given() const {
   if (name_.empty()) return std::nullopt;
   return name_ == "inner" ? LevelSetSide::kInner : LevelSetSide::kOuter;
+}
+
+std::string name_of(OuterSide outer) { return outer == OuterSide::kHigher ? "higher" : "lower"; }
+
+void OuterOption::add_to(CLI::App& command, const std::string& help) {
+  command.add_option("--outer", name_, help)->check(CLI::IsMember({"lower", "higher"}));
+}
+
+OuterSide OuterOption::or_else(OuterSide by_default) const {
+  if (name_.empty()) return by_default;
+  return name_ == name_of(OuterSide::kHigher) ? OuterSide::kHigher : OuterSide::kLower;
 }
 
 LightFile LightOptions::read(const Volume& volume, Session& session) const {

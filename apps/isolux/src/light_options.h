@@ -15,6 +15,9 @@ class LightOptions {
  public:
   void add_to(CLI::App& command, Session& session);
   [[nodiscard]] bool given() const { return !path_.empty(); }
+  [[nodiscard]] const std::string& path() const { return path_; }
+  /// --force without --light
+  void warn_of_no_effect(const Session& session) const;
   /// Reads the light and refuses that of another volume unless --force. \throw IoError, InvalidInput
   [[nodiscard]] LightFile read(const Volume& volume, Session& session) const;
   /// The light of one side of what was read. \throw InvalidInput if it does not have it
@@ -35,7 +38,22 @@ class SideOption {
  public:
   void add_to(CLI::App& command, const std::string& help);
   [[nodiscard]] std::optional<LevelSetSide> given() const;
+  /// "outer" or "inner"
+  [[nodiscard]] std::string name() const { return or_outer() == LevelSetSide::kInner ? "inner" : "outer"; }
   [[nodiscard]] LevelSetSide or_outer() const { return given().value_or(LevelSetSide::kOuter); }
+
+ private:
+  std::string name_;
+};
+
+/// "lower" or "higher"
+[[nodiscard]] std::string name_of(OuterSide outer);
+
+/// --outer lower|higher.
+class OuterOption {
+ public:
+  void add_to(CLI::App& command, const std::string& help);
+  [[nodiscard]] OuterSide or_else(OuterSide by_default) const;
 
  private:
   std::string name_;

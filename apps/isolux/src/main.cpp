@@ -60,6 +60,8 @@ int work(int argc, char** argv, isolux::Session& session, std::string& what) {
   isolux::add_convert_command(program, session);
   isolux::add_companion_commands(program, session);
   require_command(program, argc, argv);
+  const std::string empty = isolux::word_without_value(argc, argv);
+  if (!empty.empty()) throw isolux::UsageError(fmt::format("'{}': a value is missing", empty));
   try {
     program.parse(argc, argv);
   } catch (const CLI::Success& help) {

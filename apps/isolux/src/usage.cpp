@@ -55,6 +55,15 @@ std::string explain(const CLI::ParseError& error, const CLI::App& app) {
   return why;
 }
 
+std::string word_without_value(int argc, char** argv) {
+  for (int i = 1; i < argc; ++i) {
+    const std::string word = argv[i];
+    if (word == "--") break;  // behind it words are no options
+    if (word.starts_with('-') && word.find('=') == word.size() - 1) return word;
+  }
+  return "";
+}
+
 TextCheck above_zero() {
   return [](const std::string& text) {
     const auto value = number(text);
@@ -73,7 +82,7 @@ TextCheck number_within(double low, double high) {
 TextCheck finite_number() {
   return [](const std::string& text) {
     const auto value = number(text);
-    return value && std::isfinite(float(*value)) ? "" : refusal(text, "a finite number");
+    return value && std::isfinite(float(*value)) ? "" : refusal(text, "a number from -3.4e38 to 3.4e38");
   };
 }
 

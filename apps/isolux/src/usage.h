@@ -12,6 +12,10 @@ namespace isolux {
 /// known.
 [[nodiscard]] std::string explain(const CLI::ParseError& error, const CLI::App& app);
 
+/// The first word that gives an option nothing, as in `--report=`: CLI11 would take the next word for the value. "" if
+/// there is none.
+[[nodiscard]] std::string word_without_value(int argc, char** argv);
+
 /// Checks for CLI::Option::check; each gives what is wrong with the text, or "".
 using TextCheck = std::function<std::string(const std::string&)>;
 

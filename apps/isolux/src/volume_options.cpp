@@ -9,6 +9,7 @@
 #include <variant>
 
 #include "bake_options.h"
+#include "memory.h"
 #include "parse.h"
 #include "usage.h"
 
@@ -72,10 +73,11 @@ StoredVolume VolumeOptions::read_in(VoxelForm form, Session& session) const {
   const ReadOptions options = read_options(session);
   std::optional<float> replacement;
   if (!replacement_.empty()) replacement = float(parse_numbers("--replace-nonfinite", replacement_, 1)[0]);
-  StoredVolume volume = session.timed("read", [&] {
+  const auto read = [&] {
     if (form == VoxelForm::kStored) return read_stored_volume(source_, options, session.run, session.stages.readers);
     return keep_floats(read_volume(source_, options, session.run, session.stages.readers));
-  });
+  };
+  StoredVolume volume = session.timed("read", [&] { return with_memory_for("the values of " + source_, read); });
   auto* floats = std::get_if<Grid<float>>(&volume.values);
   if (replacement && floats != nullptr) {
     for (float& voxel : floats->values()) {
