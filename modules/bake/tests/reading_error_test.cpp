@@ -32,12 +32,12 @@ TEST(ReadingError, IsNotDeniedByALuckyDrawOfSites) {
   const IlluminationGrid other = paths_of(volume, 902);
   BakeSettings settings;
   settings.trace.rays = 1024;
-  for (std::uint64_t seed = 1; seed <= 12; ++seed) {
+  for (const std::uint64_t seed : {2u, 5u, 8u, 11u}) {
     SCOPED_TRACE(seed);
     settings.target_rmse = 0.0;
     const BakeResult result = bake(volume, {}, settings, builtin_stages(), {.seed = seed});
     const double error = true_error(result.light, one, other);
-    // 216 places of rough light: without a floor estimates went down to a sixteenth of the truth.
+    // One of eight sites, 216, can miss the few that are wrong: seeds 5 and 11 had a quarter and a fifth of the truth.
     EXPECT_GT(result.rmse_estimate, 0.45 * error);
     EXPECT_LT(result.rmse_estimate, 2.5 * error);
     settings.target_rmse = 0.004;
