@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <utility>
 #include <vector>
 
@@ -40,10 +39,16 @@ GlTexel gl_texel(TexelFormat format, int channels) {
   return texel(GL_R32F, GL_RGB32F, 4);
 }
 
-/// The largest value that a format holds.
-double largest(TexelFormat format) {
-  if (format == TexelFormat::kUnorm8) return 1.0;
-  return format == TexelFormat::kFloat16 ? 65504.0 : double(std::numeric_limits<float>::max());
+/// What texels are divided by before they are stored, so that the format has all its steps for them however bright or
+/// dim they are. For floats a power of two: what 16 bits hold exactly stays exact.
+double gain_of(std::span<const float> values, TexelFormat format) {
+  constexpr double kLargestFloat16 = 65504.0;
+  double brightest = 0.0;
+  for (const float e : values) brightest = std::max(brightest, std::fabs(double(e)));
+  if (brightest == 0.0 || format == TexelFormat::kFloat32) return 1.0;
+  if (format == TexelFormat::kUnorm8) return brightest;
+  // Shaders multiply by it, and do not keep floats that have fewer bits.
+  return std::max(std::exp2(std::ceil(std::log2(brightest / kLargestFloat16))), 0x1p-126);
 }
 
 /// Binds a new 3D texture and puts the old binding back at the end; the texture goes too unless it was released.
@@ -117,9 +122,7 @@ std::size_t texels(Index3 n) { return std::size_t(n.x) * std::size_t(n.y) * std:
 
 Texture3D upload_texels(Index3 size, int channels, std::span<const float> values, TexelFormat format,
                         const TextureMapping& mapping) {
-  double brightest = 0.0;
-  for (const float e : values) brightest = std::max(brightest, std::fabs(double(e)));
-  const double gain = brightest > largest(format) ? brightest / largest(format) : 1.0;
+  const double gain = gain_of(values, format);
   std::vector<float> scaled;
   if (gain != 1.0) {
     scaled.resize(values.size());

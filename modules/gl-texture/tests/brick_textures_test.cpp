@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "egl_context.h"
+#include "texels_of.h"
 
 namespace isolux {
 namespace {
@@ -39,15 +40,6 @@ LightBricks some_bricks(int channels) {
   return bricks;
 }
 
-std::vector<float> texels_of(const Texture3D& texture) {
-  const Index3 n = texture.size();
-  std::vector<float> back(std::size_t(n.x) * std::size_t(n.y) * std::size_t(n.z) * std::size_t(texture.channels()));
-  glBindTexture(GL_TEXTURE_3D, texture.name());
-  glPixelStorei(GL_PACK_ALIGNMENT, 1);
-  glGetTexImage(GL_TEXTURE_3D, 0, texture.channels() == 3 ? GL_RGB : GL_RED, GL_FLOAT, back.data());
-  return back;
-}
-
 // float32 stores every bit.
 TEST(BrickTextures, HaveEveryTexelOfABrickWhereItsPageSays) {
   const test::EglContext context;
@@ -60,10 +52,10 @@ TEST(BrickTextures, HaveEveryTexelOfABrickWhereItsPageSays) {
     std::vector<std::uint32_t> pages(bricks.slots.size());
     glBindTexture(GL_TEXTURE_3D, textures.pages.name());
     glGetTexImage(GL_TEXTURE_3D, 0, GL_RGBA, GL_UNSIGNED_INT_2_10_10_10_REV, pages.data());
-    const std::vector<float> values = texels_of(textures.values);
-    const std::vector<float> slopes = texels_of(*textures.slopes);
+    const std::vector<float> values = test::texels_of(textures.values);
+    const std::vector<float> slopes = test::texels_of(*textures.slopes);
     std::array<std::vector<float>, 3> normal_slopes;
-    for (std::size_t a = 0; a < 3; ++a) normal_slopes[a] = texels_of(*textures.normal_slopes[a]);
+    for (std::size_t a = 0; a < 3; ++a) normal_slopes[a] = test::texels_of(*textures.normal_slopes[a]);
     const Index3 n = textures.values.size();
     for (std::size_t p = 0; p < pages.size(); ++p) {
       if (bricks.slots[p] == LightBricks::kAbsent) {

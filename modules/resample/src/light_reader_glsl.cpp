@@ -26,19 +26,19 @@ bool find_texel(vec3 place, out vec3 coordinate) {
 
 constexpr const char* kVolume = R"(
 uniform sampler3D volume_values;    // f, texels at the grid points
+uniform float volume_gain;          // what f is to be multiplied with
 uniform vec3 grid_points;           // of the volume
-uniform mat3 index_from_world;      // directions
-uniform float mean_spacing;
+uniform mat3 index_from_spacings;   // directions, from world ones in mean spacings: world units may be of any size
 
-float volume_at(vec3 index) { return texture(volume_values, (index + 0.5) / grid_points).r; }
+float volume_at(vec3 index) { return volume_gain * texture(volume_values, (index + 0.5) / grid_points).r; }
 
 // Equal to interpolating the grid points' central differences, but on the outermost grid points.
-vec3 world_gradient(vec3 index) {
+vec3 index_gradient(vec3 index) {
   vec3 g;
   g.x = volume_at(index + vec3(1, 0, 0)) - volume_at(index - vec3(1, 0, 0));
   g.y = volume_at(index + vec3(0, 1, 0)) - volume_at(index - vec3(0, 1, 0));
   g.z = volume_at(index + vec3(0, 0, 1)) - volume_at(index - vec3(0, 0, 1));
-  return 0.5 * transpose(index_from_world) * g;
+  return 0.5 * g;
 }
 )";
 
@@ -47,12 +47,13 @@ uniform float near_field_step[near_field_terms];
 uniform float near_field_mean[near_field_terms];
 uniform vec3 near_field_weight[near_field_terms];
 
-vec3 near_field(vec3 index, float isovalue, vec3 downhill, float flatness) {
+vec3 near_field(vec3 index, float isovalue, vec3 downhill, vec2 steepness) {
   vec3 e = vec3(0.0);
-  vec3 ahead = index_from_world * (mean_spacing * downhill);
+  vec3 ahead = index_from_spacings * downhill;
   for (int t = 0; t < near_field_terms; ++t) {
     float fall = isovalue - volume_at(index + near_field_step[t] * ahead);
-    float openness = clamp(fall * (flatness / (near_field_step[t] * mean_spacing)), -1.0, 1.0);
+    float slope = fall / steepness.x / (near_field_step[t] * steepness.y);
+    float openness = steepness.x > 0.0 ? clamp(slope, -1.0, 1.0) : 0.0;
     e += near_field_weight[t] * (openness - near_field_mean[t]);
   }
   return e;
@@ -60,14 +61,14 @@ vec3 near_field(vec3 index, float isovalue, vec3 downhill, float flatness) {
 )";
 
 constexpr const char* kNoNearField = R"(
-vec3 near_field(vec3 index, float isovalue, vec3 downhill, float flatness) { return vec3(0.0); }
+vec3 near_field(vec3 index, float isovalue, vec3 downhill, vec2 steepness) { return vec3(0.0); }
 )";
 
 constexpr const char* kNormals = R"(
 uniform sampler3D light_normals_x;  // B
 uniform sampler3D light_normals_y;
 uniform sampler3D light_normals_z;
-uniform float light_normals_gain;   // what B is to be multiplied with
+uniform vec3 light_normals_gain;    // what each is to be multiplied with
 
 vec3 by_normal(vec3 place, vec3 downhill) {
   vec3 coordinate;
@@ -85,11 +86,13 @@ vec3 by_normal(vec3 place, vec3 downhill) { return vec3(0.0); }
 constexpr const char* kAtVertices = R"(
 vec3 light_at_vertices(vec3 place, float isovalue) {
   vec3 index = place * (grid_points - 1.0);
-  vec3 gradient = world_gradient(index);
-  float square = dot(gradient, gradient);
-  float flatness = square > 0.0 ? inversesqrt(square) : 0.0;
-  vec3 downhill = -flatness * gradient;
-  return near_field(index, isovalue, downhill, flatness) + by_normal(place, downhill);
+  vec3 gradient = index_gradient(index);
+  // The gradient's length as a product: floats hold no squares of small or large values.
+  float largest = max(max(abs(gradient.x), abs(gradient.y)), abs(gradient.z));
+  vec3 uphill = largest > 0.0 ? transpose(index_from_spacings) * (gradient / largest) : vec3(0.0);
+  vec2 steepness = vec2(largest, length(uphill));
+  vec3 downhill = largest > 0.0 ? -uphill / steepness.y : vec3(0.0);
+  return near_field(index, isovalue, downhill, steepness) + by_normal(place, downhill);
 }
 )";
 

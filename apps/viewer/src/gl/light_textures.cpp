@@ -85,24 +85,9 @@ LightTextures::LightTextures(const Volume& volume, const IlluminationGrid& light
 
 void LightTextures::upload(const LightReader& reader, const IlluminationGrid& light) {
   reference_isovalue_ = reader.reference_isovalue();
-  const LightDetail& detail = light.detail;
-  const auto largest = [](float gain, const std::vector<float>& slopes) {
-    for (const float slope : slopes) gain = std::max(gain, std::fabs(slope));
-    return gain;
-  };
-  slope_gain_ = largest(slope_gain_, detail.slopes);
-  for (const auto& slopes : detail.normal_slopes) normal_gain_ = largest(normal_gain_, slopes);
-  // float16 would lose slopes per unit of a large range of values, and adds .0003 rms to light read so.
-  const auto scaled = [](std::vector<float> slopes, float gain) {
-    for (float& slope : slopes) slope /= gain;
-    return slopes;
-  };
-  memory_.dense = light.values.size() * std::size_t(detail.numbers()) * sizeof(std::uint16_t);
+  memory_.dense = light.values.size() * std::size_t(light.detail.numbers()) * sizeof(std::uint16_t);
   if (reader.bricks() != nullptr) {
-    LightBricks bricks = *reader.bricks();
-    bricks.slopes = scaled(std::move(bricks.slopes), slope_gain_);
-    for (auto& slopes : bricks.normal_slopes) slopes = scaled(std::move(slopes), normal_gain_);
-    BrickTextures textures = upload_bricks(bricks, TexelFormat::kFloat16);
+    BrickTextures textures = upload_bricks(*reader.bricks(), TexelFormat::kFloat16);
     memory_.light = textures.bytes();
     offsets_ = std::move(textures.values);
     slopes_ = std::move(textures.slopes);
@@ -112,14 +97,14 @@ void LightTextures::upload(const LightReader& reader, const IlluminationGrid& li
   }
   memory_.light = memory_.dense;
   offsets_ = upload_grid(reader.offsets(), volume_, "float16");
-  const auto upload_slopes = [&](const std::vector<float>& slopes, float gain, std::optional<Texture3D>& texture) {
+  const auto upload_slopes = [&](const std::vector<float>& slopes, std::optional<Texture3D>& texture) {
     if (slopes.empty()) return;
     IlluminationGrid grid(light.lattice, light.channels);
-    grid.values = scaled(slopes, gain);
+    grid.values = slopes;
     texture = upload_grid(grid, volume_, "float16");
   };
-  upload_slopes(detail.slopes, slope_gain_, slopes_);
-  for (unsigned a = 0; a < 3; ++a) upload_slopes(detail.normal_slopes[a], normal_gain_, normals_[a]);
+  upload_slopes(light.detail.slopes, slopes_);
+  for (unsigned a = 0; a < 3; ++a) upload_slopes(light.detail.normal_slopes[a], normals_[a]);
 }
 
 LightShader LightTextures::kind() const {
@@ -132,10 +117,11 @@ LightShader LightTextures::kind() const {
 void LightTextures::bind_at_vertices(const ShaderProgram& program) const {
   bind_texture(program, 2, "volume_values", *values_);
   glUniform3fv(program.uniform("grid_points"), 1, glm::value_ptr(Vec3f(volume_.size)));
-  glUniformMatrix3fv(program.uniform("index_from_world"), 1, GL_FALSE,
-                     glm::value_ptr(glm::mat3(glm::inverse(volume_.frame.axes))));
+  glUniform1f(program.uniform("volume_gain"), float(values_->gain()));
   const Vec3 spacing = volume_.frame.spacing();
-  glUniform1f(program.uniform("mean_spacing"), float(std::cbrt(spacing.x * spacing.y * spacing.z)));
+  const double mean_spacing = std::cbrt(spacing.x * spacing.y * spacing.z);
+  const glm::mat3 index_from_spacings(mean_spacing * glm::inverse(volume_.frame.axes));
+  glUniformMatrix3fv(program.uniform("index_from_spacings"), 1, GL_FALSE, glm::value_ptr(index_from_spacings));
   for (std::size_t t = 0; t < terms_.size(); ++t) {
     const auto element = [&](const char* name) { return program.uniform(fmt::format("{}[{}]", name, t).c_str()); };
     glUniform1f(element("near_field_step"), terms_[t].step);
@@ -147,7 +133,8 @@ void LightTextures::bind_at_vertices(const ShaderProgram& program) const {
   bind_texture(program, 4, "light_normals_x", *normals_[0]);
   bind_texture(program, 5, "light_normals_y", *normals_[1]);
   bind_texture(program, 6, "light_normals_z", *normals_[2]);
-  glUniform1f(program.uniform("light_normals_gain"), normal_gain_);
+  const Vec3f gains(normals_[0]->gain(), normals_[1]->gain(), normals_[2]->gain());
+  glUniform3fv(program.uniform("light_normals_gain"), 1, glm::value_ptr(gains));
 }
 
 void LightTextures::bind_places(const ShaderProgram& program) const {
@@ -164,7 +151,7 @@ void LightTextures::bind(const ShaderProgram& program) const {
   bind_places(program);
   if (slopes_) {
     bind_texture(program, 1, "light_slopes", *slopes_);
-    glUniform1f(program.uniform("light_slope_gain"), slope_gain_);
+    glUniform1f(program.uniform("light_slope_gain"), float(slopes_->gain()));
   }
   bind_texture(program, 0, "light_offsets", offsets_);
   glUniform1f(program.uniform("light_gain"), float(offsets_.gain()));

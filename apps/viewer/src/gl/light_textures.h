@@ -7,7 +7,6 @@
 
 #include <array>
 #include <cstddef>
-#include <limits>
 #include <optional>
 #include <vector>
 
@@ -58,8 +57,6 @@ class LightTextures {
   std::vector<NearFieldTerm> terms_;
   float reference_isovalue_ = 0.0f;
   float ceiling_ = 0.0f;
-  float slope_gain_ = std::numeric_limits<float>::min();
-  float normal_gain_ = std::numeric_limits<float>::min();
   LightMemory memory_;
 };
 

@@ -29,7 +29,7 @@ class Texture3D {
   /// Texture coordinate = scale * place + offset, see TextureMapping.
   [[nodiscard]] Vec3 scale() const { return mapping_.scale; }
   [[nodiscard]] Vec3 offset() const { return mapping_.offset; }
-  /// e = gain * what the shader reads: 1 unless the light goes beyond what the format can hold.
+  /// e = gain * what the shader reads: texels are stored so that the format has its steps for light of any brightness.
   [[nodiscard]] double gain() const { return gain_; }
   /// What its texels take, drivers' padding aside.
   [[nodiscard]] std::size_t bytes() const { return bytes_; }

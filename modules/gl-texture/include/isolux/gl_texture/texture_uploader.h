@@ -10,8 +10,8 @@ namespace isolux {
 
 /// How a channel of a texel is stored.
 enum class TexelFormat : std::uint8_t {
-  kUnorm8,   ///< 8 bits, 255 steps from 0 to 1, or to the brightest texel beyond
-  kFloat16,  ///< 11 significant bits
+  kUnorm8,   ///< 8 bits, 255 steps from 0 to the brightest texel
+  kFloat16,  ///< 11 significant bits, down to 2^-29 of the brightest texel
   kFloat32
 };
 
