@@ -26,13 +26,16 @@
 namespace isolux::viewer {
 namespace {
 
-/// A ball far from the world's origin, stretched and turned, so that a wrong frame shows.
-Volume far_ball() {
+/// A ball far from the world's origin, stretched and turned, so that a wrong frame shows; in lengths and values so many
+/// times as large.
+Volume far_ball(double length, float value) {
   Volume volume = read_volume("gen:sphere:32");
   Lattice lattice = volume.lattice();
-  lattice.frame = {.origin = {4000.0, -700.0, 90.0}, .axes = Mat3({0.6, 0.8, 0.0}, {-1.6, 1.2, 0.0}, {0.0, 0.0, 3.0})};
-  volume.values =
-      Grid<float>(lattice, std::vector<float>(volume.values.values().begin(), volume.values.values().end()));
+  lattice.frame = {.origin = length * Vec3(4000.0, -700.0, 90.0),
+                   .axes = length * Mat3({0.6, 0.8, 0.0}, {-1.6, 1.2, 0.0}, {0.0, 0.0, 3.0})};
+  std::vector<float> values(volume.values.values().begin(), volume.values.values().end());
+  for (float& v : values) v *= value;
+  volume.values = Grid<float>(lattice, std::move(values));
   return volume;
 }
 
@@ -64,11 +67,14 @@ IlluminationGrid detailed(IlluminationGrid light) {
 /// which are LightReader's at the vertices and linear between them.
 class ExpectedLight {
  public:
-  ExpectedLight(const Volume& volume, const IlluminationGrid& light, const IndexedMesh& mesh, float isovalue)
+  ExpectedLight(const Volume& volume, const IlluminationGrid& light, const IndexedMesh& mesh, float isovalue,
+                float brightness)
       : frame_(volume.lattice().frame),
         mesh_(mesh),
         isovalue_(double(isovalue)),
-        ceiling_(light.detail.near_field.empty() ? kHigh : light.detail.ceiling),
+        lift_(4.0f * brightness),
+        high_(100.0f * brightness),
+        ceiling_(light.detail.near_field.empty() ? high_ : light.detail.ceiling),
         texels_(volume, without_normals(volume, unclamped(light, true))) {
     if (light.detail.near_field.empty()) return;
     const LightReader whole(volume, unclamped(light, false));
@@ -80,17 +86,14 @@ class ExpectedLight {
 
   /// At a point of the mesh, world space.
   [[nodiscard]] Vec3f at(const Vec3& world) const {
-    const Vec3f e = texels_.at_index(frame_.index(world), isovalue_) - kLift;
+    const Vec3f e = texels_.at_index(frame_.index(world), isovalue_) - lift_;
     return glm::clamp(near_field_.empty() ? e : e + near_field_at(world), Vec3f(0.0f), Vec3f(ceiling_));
   }
 
  private:
-  static constexpr float kLift = 4.0f;  // so that nothing is clamped at 0
-  static constexpr float kHigh = 100.0f;
-
-  static IlluminationGrid unclamped(IlluminationGrid light, bool texels_alone) {
-    for (float& v : light.values) v += kLift;
-    light.detail.ceiling = kHigh;
+  [[nodiscard]] IlluminationGrid unclamped(IlluminationGrid light, bool texels_alone) const {
+    for (float& v : light.values) v += lift_;
+    light.detail.ceiling = high_;
     if (texels_alone) light.detail.near_field.clear();
     return light;
   }
@@ -139,10 +142,29 @@ class ExpectedLight {
   IndexToWorld frame_;
   const IndexedMesh& mesh_;
   double isovalue_;
+  float lift_;  ///< so that nothing is clamped at 0
+  float high_;
   float ceiling_;
   LightReader texels_;
   std::vector<Vec3f> near_field_;  ///< at the vertices
 };
+
+void make_brighter(IlluminationGrid& light, float factor) {
+  const auto times = [&](std::vector<float>& values) {
+    for (float& v : values) v *= factor;
+  };
+  times(light.values);
+  times(light.detail.slopes);
+  for (auto& slopes : light.detail.normal_slopes) times(slopes);
+  for (NearFieldTerm& term : light.detail.near_field) term.weight *= factor;
+  light.detail.ceiling *= factor;
+}
+
+/// Part of a test's name: "_length_e17" for 1e17.
+std::string scaled(const std::string& what, double factor) {
+  const int exponent = int(std::lround(std::log10(factor)));
+  return exponent == 0 ? "" : what + (exponent < 0 ? "_em" : "_e") + std::to_string(std::abs(exponent));
+}
 
 struct LightKind {
   bool at_voxels = false;
@@ -150,6 +172,10 @@ struct LightKind {
   bool detail = false;
   bool bricks = false;
   bool own = false;  ///< TexelLight::kOwn
+  // Times which lengths, values and light are as large: floats hold their squares no more.
+  double length = 1.0;
+  float value = 1.0f;
+  float light = 1.0f;
 };
 
 class LitPixels : public testing::TestWithParam<LightKind> {};
@@ -158,15 +184,17 @@ class LitPixels : public testing::TestWithParam<LightKind> {};
 TEST_P(LitPixels, AgreeWithTheLookUpOnTheProcessor) {
   const test::EglContext context;
   if (!context) GTEST_SKIP() << context.why();
-  const auto [at_voxels, channels, detail, bricks, own] = GetParam();
-  const auto volume = std::make_shared<const ViewedVolume>(far_ball());
+  const auto [at_voxels, channels, detail, bricks, own, length, value, brightness] = GetParam();
+  const auto volume = std::make_shared<const ViewedVolume>(far_ball(length, value));
   const Lattice& lattice = volume->lattice();
   const Index3 cells = bricks ? Index3(62, 53, 49) : Index3(17, 31, 9);
   IlluminationGrid light = varied_light(at_voxels ? voxel_lattice(lattice) : cell_lattice(lattice, cells), channels);
   if (detail) light = detailed(std::move(light));
-  if (bricks) light.detail.isovalues = ValueRange{.low = -0.405f, .high = -0.395f};
-  constexpr float kIsovalue = -0.4f;
-  const Surface surface = SurfaceMaker(volume, extractors(), {}).make({.isovalue = kIsovalue}, {}, {});
+  for (float& slope : light.detail.slopes) slope /= value;
+  if (bricks) light.detail.isovalues = ValueRange{.low = -0.405f * value, .high = -0.395f * value};
+  make_brighter(light, brightness);
+  const float isovalue = -0.4f * value;
+  const Surface surface = SurfaceMaker(volume, extractors(), {}).make({.isovalue = isovalue}, {}, {});
   // Texels' own light shows as what a reader makes of it.
   if (own) {
     light.detail.texel_light = TexelLight::kOwn;
@@ -174,17 +202,17 @@ TEST_P(LitPixels, AgreeWithTheLookUpOnTheProcessor) {
     light.detail.normal_slopes = {};
   }
   const ExpectedLight expected(volume->floats(), own ? LightReader(volume->floats(), light).offsets() : light,
-                               surface.mesh, kIsovalue);
+                               surface.mesh, isovalue, brightness);
 
   SurfaceRenderer renderer(volume);
-  renderer.set_surface(surface.mesh, kIsovalue);
+  renderer.set_surface(surface.mesh, isovalue);
   renderer.set_light(light);
   EXPECT_EQ(renderer.light_memory().light < renderer.light_memory().dense, bricks);
   SurfaceView view;
   view.camera = orbit_camera(lattice, 30.0, 20.0, 1.0);
   view.lighting = Lighting::kGlobal;
-  view.colour = {.albedo = {0.9f, 0.8f, 0.6f}, .emission = {0.0f, 0.05f, 0.1f}};
-  view.exposure = 1.1f;
+  view.colour = {.albedo = {0.9f, 0.8f, 0.6f}, .emission = brightness * Vec3f(0.0f, 0.05f, 0.1f)};
+  view.exposure = 1.1f / brightness;
   Target target;
   renderer.draw(view);
   target.read();
@@ -212,18 +240,24 @@ TEST_P(LitPixels, AgreeWithTheLookUpOnTheProcessor) {
   EXPECT_GT(compared, kSize * kSize / 20);
 }
 
-INSTANTIATE_TEST_SUITE_P(BothLattices, LitPixels,
-                         testing::Values(LightKind{false, 1, false}, LightKind{false, 3, false},
-                                         LightKind{true, 1, false}, LightKind{true, 3, false},
-                                         LightKind{false, 1, true}, LightKind{false, 3, true}, LightKind{true, 3, true},
-                                         LightKind{false, 1, false, true}, LightKind{false, 1, true, true},
-                                         LightKind{false, 3, true, true}, LightKind{false, 3, false, true},
-                                         LightKind{false, 1, true, false, true}, LightKind{false, 3, true, true, true}),
-                         [](const auto& tested) {
-                           return std::string(tested.param.at_voxels ? "voxels_" : "cells_") +
-                                  std::to_string(tested.param.channels) + (tested.param.detail ? "_detailed" : "") +
-                                  (tested.param.bricks ? "_bricks" : "") + (tested.param.own ? "_own" : "");
-                         });
+// Lengths are powers of two: they leave the mesh its bits.
+INSTANTIATE_TEST_SUITE_P(
+    BothLattices, LitPixels,
+    testing::Values(LightKind{false, 1, false}, LightKind{false, 3, false}, LightKind{true, 1, false},
+                    LightKind{true, 3, false}, LightKind{false, 1, true}, LightKind{false, 3, true},
+                    LightKind{true, 3, true}, LightKind{false, 1, false, true}, LightKind{false, 1, true, true},
+                    LightKind{false, 3, true, true}, LightKind{false, 3, false, true},
+                    LightKind{false, 1, true, false, true}, LightKind{false, 3, true, true, true},
+                    LightKind{.detail = true, .length = 0x1p57}, LightKind{.detail = true, .length = 0x1p-80},
+                    LightKind{.detail = true, .value = 1e20f}, LightKind{.detail = true, .value = 1e-24f},
+                    LightKind{.detail = true, .bricks = true, .light = 1e-9f},
+                    LightKind{.detail = true, .light = 1e9f}),
+    [](const auto& tested) {
+      return std::string(tested.param.at_voxels ? "voxels_" : "cells_") + std::to_string(tested.param.channels) +
+             (tested.param.detail ? "_detailed" : "") + (tested.param.bricks ? "_bricks" : "") +
+             (tested.param.own ? "_own" : "") + scaled("_length", tested.param.length) +
+             scaled("_value", double(tested.param.value)) + scaled("_light", double(tested.param.light));
+    });
 
 }  // namespace
 }  // namespace isolux::viewer

@@ -124,13 +124,13 @@ TEST(Trackball, KeepsWhatTheMouseDidForAPictureOfAnotherShape) {
 }
 
 /// The box's corners in clip space.
-std::vector<glm::dvec4> shown_corners(const Camera& camera, double aspect) {
-  const Vec3 middle = box_middle(kVolume);
-  const glm::dmat4 clip = clip_from_centred(camera, middle, box_radius(kVolume), aspect);
+std::vector<glm::dvec4> shown_corners(const Camera& camera, double aspect, const Lattice& volume = kVolume) {
+  const Vec3 middle = box_middle(volume);
+  const glm::dmat4 clip = clip_from_centred(camera, middle, box_radius(volume), aspect);
   std::vector<glm::dvec4> corners;
   for (int corner = 0; corner < 8; ++corner) {
     const Index3 far_side(corner & 1, corner >> 1 & 1, corner >> 2);
-    corners.push_back(clip * glm::dvec4(kVolume.frame.world(Vec3(far_side * (kVolume.size - 1))) - middle, 1.0));
+    corners.push_back(clip * glm::dvec4(volume.frame.world(Vec3(far_side * (volume.size - 1))) - middle, 1.0));
   }
   return corners;
 }
@@ -154,6 +154,17 @@ TEST(Framing, ShowsWhatTheRaycasterShowsInThatPlace) {
     const glm::dvec4 p = clip * glm::dvec4(seen - middle, 1.0);
     EXPECT_NEAR(p.x / p.w, place.x / aspect, kRounding);
     EXPECT_NEAR(p.y / p.w, place.y, kRounding);
+  }
+}
+
+TEST(Framing, IsTheSameForABoxOfAnySize) {
+  const std::vector<glm::dvec4> corners = shown_corners(orbit_camera(kVolume, 30.0, 20.0, 1.5), 1.5);
+  for (const double length : {1e-30, 1e17, 1e36}) {
+    Lattice volume = kVolume;
+    volume.frame = {.origin = length * volume.frame.origin, .axes = length * volume.frame.axes};
+    const auto scaled = shown_corners(orbit_camera(volume, 30.0, 20.0, 1.5), 1.5, volume);
+    for (std::size_t i = 0; i < corners.size(); ++i)
+      expect_near(Vec3(scaled[i]) / scaled[i].w, Vec3(corners[i]) / corners[i].w, kRounding);
   }
 }
 

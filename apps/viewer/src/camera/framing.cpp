@@ -4,6 +4,7 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <glm/gtc/matrix_transform.hpp>
+#include <glm/matrix.hpp>
 
 namespace isolux::viewer {
 
@@ -25,8 +26,11 @@ glm::dmat4 clip_from_centred(const Camera& camera, const Vec3& centre, double ra
   // A ten-thousandth of the far plane still leaves 24 bits of depth some thousand steps across the object.
   const double far_plane = distance + radius;
   const double near_plane = std::max(distance - radius, 1e-4 * far_plane);
-  return glm::perspective(2.0 * std::atan(camera.half_height), aspect, near_plane, far_plane) *
-         glm::lookAt(eye, eye + camera.forward, camera.up);
+  // Not glm::lookAt(eye, eye + forward): far eyes, in small world units, round the sum to the eye.
+  const Mat3 turn = glm::transpose(Mat3(camera.right, camera.up, -camera.forward));
+  glm::dmat4 view(turn);
+  view[3] = glm::dvec4(-(turn * eye), 1.0);
+  return glm::perspective(2.0 * std::atan(camera.half_height), aspect, near_plane, far_plane) * view;
 }
 
 }  // namespace isolux::viewer

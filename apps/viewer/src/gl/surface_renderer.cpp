@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 #include <isolux/resample/light_reader.h>
 
+#include <algorithm>
+#include <cmath>
 #include <glm/geometric.hpp>
 #include <glm/gtc/type_ptr.hpp>
 #include <glm/mat4x4.hpp>
@@ -33,6 +35,10 @@ std::string fragment_shader(Shading shading) {
 
 constexpr Vec3f kLineColour(0.08f, 0.1f, 0.2f);
 
+/// A power of two near the box's radius, as far as its inverse is a float too: squares of lengths in world units may be
+/// beyond floats.
+double unit_for(double radius) { return std::exp2(std::clamp(std::round(std::log2(radius)), -126.0, 126.0)); }
+
 template <class Values>
 std::size_t bytes(const Values& values) {
   return values.size() * sizeof(values[0]);
@@ -44,6 +50,7 @@ SurfaceRenderer::SurfaceRenderer(std::shared_ptr<const ViewedVolume> volume)
     : volume_(std::move(volume)),
       centre_(box_middle(volume_->lattice())),
       radius_(box_radius(volume_->lattice())),
+      unit_(unit_for(radius_)),
       local_({kSurfaceVertexShader}, {fragment_shader(Shading::kLocal), light_reader_glsl({})}),
       exact_light_({kSurfaceVertexShader}, {fragment_shader(Shading::kExact), light_reader_glsl({})}),
       lines_({kSurfaceVertexShader}, {fragment_shader(Shading::kLines), light_reader_glsl({})}) {
@@ -138,19 +145,21 @@ void SurfaceRenderer::use(const ShaderProgram& program) const {
   const Lattice& lattice = volume_->lattice();
   Mat3 axes = lattice.frame.axes;
   for (int a = 0; a < 3; ++a) axes[a] *= double(lattice.size[a] - 1);
-  const glm::mat3 place(glm::inverse(axes));
+  const glm::mat3 place(unit_ * glm::inverse(axes));
   program.use();
   glUniform3fv(program.uniform("centre"), 1, glm::value_ptr(centre_));
+  glUniform1f(program.uniform("scale"), float(1.0 / unit_));
   glUniformMatrix3fv(program.uniform("place_from_centred"), 1, GL_FALSE, glm::value_ptr(place));
   glUniform1f(program.uniform("isovalue"), isovalue_);
 }
 
 void SurfaceRenderer::use(const ShaderProgram& program, const SurfaceView& view) const {
   const Vec3 centre(centre_);
-  const glm::mat4 clip(clip_from_centred(view.camera, centre, radius_, view.aspect));
-  const Vec3f eye(view.camera.eye - centre);
+  glm::dmat4 clip = clip_from_centred(view.camera, centre, radius_, view.aspect);
+  clip[3] /= unit_;  // homogeneous: in place of all else times the unit
+  const Vec3f eye((view.camera.eye - centre) / unit_);
   use(program);
-  glUniformMatrix4fv(program.uniform("clip_from_centred"), 1, GL_FALSE, glm::value_ptr(clip));
+  glUniformMatrix4fv(program.uniform("clip_from_centred"), 1, GL_FALSE, glm::value_ptr(glm::mat4(clip)));
   glUniform3fv(program.uniform("eye"), 1, glm::value_ptr(eye));
   glUniform3fv(program.uniform("albedo"), 1, glm::value_ptr(view.colour.albedo));
   glUniform3fv(program.uniform("emission"), 1, glm::value_ptr(view.colour.emission));

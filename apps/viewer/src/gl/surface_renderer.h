@@ -81,6 +81,7 @@ class SurfaceRenderer {
   std::shared_ptr<const ViewedVolume> volume_;
   Vec3f centre_;
   double radius_ = 0.0;
+  double unit_ = 1.0;  ///< world units that shaders count as one
   ShaderProgram local_;
   ShaderProgram exact_light_;
   ShaderProgram lines_;

@@ -5,7 +5,7 @@ in vec3 outward;
 centroid in vec3 place;  // pixels that a triangle covers in part must not look beyond it: there may be no texels
 centroid in vec3 at_vertices;  // exact light, or what is added at the vertices
 
-uniform vec3 eye;       // relative to the centre
+uniform vec3 eye;       // relative to the centre, in the vertices' units
 uniform vec3 albedo;
 uniform vec3 emission;
 uniform float exposure;
