@@ -1,5 +1,6 @@
 // isolux-view: the interactive window. `isolux view` starts it with the arguments that it was given.
 #include <fmt/format.h>
+#include <isolux/bake/light_metadata.h>
 #include <isolux/bake/scene_file.h>
 #include <isolux/bake/version.h>
 #include <isolux/core/error.h>
@@ -96,6 +97,19 @@ struct Words {
         ->type_name("N");
   }
 
+  /// Refuses a light of the other side than --outer alone, as render does. \throw IoError, InvalidInput
+  [[nodiscard]] viewer::KnownLight read_light(const Volume& shown, Session& session) const {
+    const auto file = std::make_shared<const LightFile>(light.read(shown, session));
+    if (const auto side = outer_side()) static_cast<void>(light.of_side(*file, side_towards(*file, *side)));
+    if (isovalue && mode != "local" && !exact_light) warn_outside_light(*file, float(*isovalue), session);
+    return viewer::known_light(file);
+  }
+
+  [[nodiscard]] std::optional<OuterSide> outer_side() const {
+    if (outer.empty()) return std::nullopt;
+    return outer == "higher" ? OuterSide::kHigher : OuterSide::kLower;
+  }
+
   /// \throw UsageError, IoError, InvalidInput
   [[nodiscard]] viewer::AppSettings settings(const Session& session) const {
     viewer::AppSettings result;
@@ -117,7 +131,7 @@ struct Words {
     require_choice(session.stages.extractors, result.viewer.extractor);
     result.viewer.run = session.run;
     if (!scene.empty()) result.viewer.scene = read_scene(scene);
-    if (!outer.empty()) result.viewer.outer = outer == "higher" ? OuterSide::kHigher : OuterSide::kLower;
+    result.viewer.outer = outer_side();
     if (mode == "local") result.viewer.layout = viewer::Layout::kLocal;
     if (mode == "global") result.viewer.layout = viewer::Layout::kGlobal;
     if (mode == "both") result.viewer.layout = viewer::Layout::kSideBySide;
@@ -142,9 +156,7 @@ void look(const Words& words, const viewer::AppSettings& settings, Session& sess
   StoredVolume volume =
       given ? words.volume.read_stored(session) : read_stored_volume("gen:marschner-lobb", {}, session.run);
   viewer::Document document = viewer::make_document(std::move(volume));
-  if (words.light.given())
-    document.light =
-        viewer::known_light(std::make_shared<const LightFile>(words.light.read(document.volume->floats(), session)));
+  if (words.light.given()) document.light = words.read_light(document.volume->floats(), session);
   warn_outside(words.isovalue, document, session);
   session.timed("view", [&] { viewer::run_app(std::move(document), settings, session.stages); });
 }

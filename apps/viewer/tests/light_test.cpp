@@ -66,7 +66,8 @@ TEST(OuterSide, ChoosesTheLight) {
   EXPECT_EQ(&shown_grid(*both.file, OuterSide::kHigher), &*both.file->inner);
   const KnownLight one = even_light(OuterSide::kHigher, {});
   EXPECT_EQ(grid_of(*one.file, OuterSide::kLower), nullptr);
-  EXPECT_EQ(&shown_grid(*one.file, OuterSide::kLower), &one.file->grid) << "all there is";
+  EXPECT_EQ(&shown_grid(*one.file, OuterSide::kHigher), &one.file->grid);
+  EXPECT_THROW(static_cast<void>(shown_grid(*one.file, OuterSide::kLower)), InvalidInput) << "it is of the other side";
 }
 
 TEST(ExactLight, IsOfTheWindowsOuterSide) {
@@ -194,6 +195,9 @@ TEST_F(SavedSurface, HasTheLightOfTheOuterSide) {
     for (const auto& colour : colours) ASSERT_EQ(colour[0], srgb_code(0.8f * e));
   }
   EXPECT_TRUE(saved({}).empty());
+  document_.light = even_light(OuterSide::kLower, {});
+  EXPECT_THROW(saved({.source = VertexLight::Source::kBaked, .positions = {}, .radiance = {}}), InvalidInput)
+      << "of the other side alone";
 }
 
 }  // namespace

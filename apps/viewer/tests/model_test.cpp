@@ -42,8 +42,10 @@ TEST(Histogram, PartsTwoClassesBetweenThem) {
   EXPECT_LT(threshold, 199.0);
 }
 
-TEST(Histogram, GivesAConstantVolumeItsValue) {
-  EXPECT_EQ(otsu_threshold(make_histogram(volume_of(std::vector<float>(8, 3.0f)))), 3.0);
+TEST(Histogram, GivesAConstantVolumeItsValueInTheMiddleWhereTheSliderHasIt) {
+  const Histogram histogram = make_histogram(volume_of(std::vector<float>(8, 3.0f)));
+  EXPECT_EQ(otsu_threshold(histogram), 3.0);
+  EXPECT_EQ(histogram.counts[Histogram::kSteps / 2], 8u);
 }
 
 /// Surfaces that only carry their settings; each waits until it is let through.

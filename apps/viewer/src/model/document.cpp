@@ -62,8 +62,7 @@ const IlluminationGrid* grid_of(const LightFile& light, OuterSide side) {
 }
 
 const IlluminationGrid& shown_grid(const LightFile& light, OuterSide outer) {
-  const IlluminationGrid* own = grid_of(light, outer);
-  return own != nullptr ? *own : light.grid;
+  return light_of_side(light, side_towards(light, outer), "the light");
 }
 
 bool has_light_of(const Document& document, float isovalue) {

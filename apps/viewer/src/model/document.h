@@ -46,7 +46,7 @@ struct Lighted {
 
 /// The light of level sets seen from `side`; null if the file has none for it.
 [[nodiscard]] const IlluminationGrid* grid_of(const LightFile& light, OuterSide side);
-/// What is read on the outer side: a light of one side stands for the other where that is wanted.
+/// What is read on the outer side. \throw InvalidInput if the light is of the other side alone
 [[nodiscard]] const IlluminationGrid& shown_grid(const LightFile& light, OuterSide outer);
 
 /// Whether the document has a light of this isovalue.

@@ -11,10 +11,11 @@ Histogram make_histogram(const VolumeView& volume) {
   const double low = result.range.low;
   const double width = double(result.range.high) - low;
   const double steps_a_unit = width > 0.0 ? Histogram::kSteps / width : 0.0;
+  const int first = width > 0.0 ? 0 : Histogram::kSteps / 2;  // the one value of a flat volume, as the slider has it
   std::visit(
       [&](const auto& values) {
         for (const auto v : values) {
-          const int step = std::min(int((double(v) - low) * steps_a_unit), Histogram::kSteps - 1);
+          const int step = std::min(first + int((double(v) - low) * steps_a_unit), Histogram::kSteps - 1);
           ++result.counts[std::size_t(step)];
         }
       },

@@ -7,7 +7,7 @@
 
 namespace isolux::viewer {
 
-/// How often values occur: 256 equal steps from the smallest to the largest.
+/// How often values occur: 256 equal steps from the smallest to the largest; a single value is in the middle.
 struct Histogram {
   static constexpr int kSteps = 256;
   ValueRange range;
