@@ -174,7 +174,10 @@ TEST_F(IsoluxView, DrawsLocalLightWhereTheLightIsOfOtherIsovalues) {
   ASSERT_EQ(inside.size(), 200u * 200u * 3u);
   EXPECT_NEAR(inside[(100 * 200 + 100) * 3], 231, 1) << "albedo .8 of 1, as an sRGB code";
   EXPECT_EQ(draw("inside2.png", "--iso -0.4"), inside);
-  EXPECT_EQ(draw("outside.png", "--iso -0.2"), draw("local.png", "--iso -0.2 --mode local"));
+  const auto local = draw("local.png", "--iso -0.2 --mode local");
+  EXPECT_EQ(said(), "");
+  EXPECT_EQ(draw("outside.png", "--iso -0.2"), local);
+  EXPECT_NE(said().find("isovalue -0.2 lies outside the range -0.41 to -0.39"), std::string::npos) << said();
 }
 
 TEST_F(IsoluxView, TracesExactLightAtTheVertices) {
@@ -220,6 +223,13 @@ TEST_F(IsoluxView, SaysThatItsIsovalueIsOutsideTheValues) {
   if (!has_xvfb()) GTEST_SKIP() << "xvfb-run or xauth is not installed";
   EXPECT_EQ(run_with_display("gen:sphere:8 --iso 5 --frames 1 --size 64x64"), 0);
   EXPECT_EQ(said().rfind("isolux: warning: --iso 5 lies outside the values of gen:sphere:8", 0), 0u) << said();
+}
+
+TEST_F(IsoluxView, WritesAPictureOfTheSizeAskedOnASmallerScreen) {
+  if (!has_xvfb()) GTEST_SKIP() << "xvfb-run or xauth is not installed";
+  ASSERT_EQ(run_with_display("gen:sphere:24 --size 2100x600 --screenshot " + path("large.png")), 0) << said();
+  EXPECT_EQ(picture("large.png").width, 2100);
+  EXPECT_EQ(picture("large.png").height, 600);
 }
 
 TEST_F(IsoluxView, WritesNoPictureThatIsNotFinished) {
@@ -268,6 +278,8 @@ TEST_F(IsoluxView, RefusesAMissingVolumeAndTheLightOfAnother) {
   write_light(light, path("light.nrrd"), "left-posterior-superior");
   EXPECT_EQ(run_with_display("gen:sphere:8 --frames 1 --light " + path("light.nrrd")), 1);
   EXPECT_EQ(run_with_display("gen:sphere:8 --frames 1 --force --light " + path("light.nrrd")), 0) << said();
+  EXPECT_EQ(run_with_display("gen:sphere:8 --frames 1 --force --outer higher --light " + path("light.nrrd")), 1);
+  EXPECT_NE(said().find("light.nrrd: it holds light of the outer side alone"), std::string::npos) << said();
 }
 
 }  // namespace

@@ -1,28 +1,21 @@
-// The viewer without its window.
+// What the viewer does and says.
 #include "app/viewer.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <isolux/bake/light_metadata.h>
-#include <isolux/render/image.h>
-#include <isolux/volume_io/read.h>
+#include <isolux/core/error.h>
 #include <unistd.h>
 
 #include <algorithm>
-#include <array>
 #include <chrono>
 #include <filesystem>
 #include <fstream>
-#include <functional>
-#include <memory>
 #include <optional>
 #include <string>
 #include <thread>
-#include <utility>
 #include <vector>
 
-#include "egl_context.h"
-#include "gl_target.h"
+#include "viewer_fixture.h"
 
 namespace isolux::viewer {
 namespace {
@@ -31,73 +24,6 @@ using testing::Contains;
 using testing::Each;
 using testing::HasSubstr;
 using testing::Not;
-
-constexpr const char* kBall = "gen:sphere:24";
-
-/// A light of kBall in a dim scene of its own, which says that it is of these isovalues.
-std::shared_ptr<const LightFile> dim_light(std::optional<ValueRange> isovalues) {
-  const Volume volume = read_volume(kBall);
-  Scene scene;
-  scene.environment = UniformEnvironment{.radiance = Vec3f(0.25f)};
-  BakeSettings settings;
-  settings.texels = Index3(8);
-  LightFile light = make_light_file(bake(volume, scene, settings, builtin_stages(), {}), volume, scene, {});
-  light.grid.detail.isovalues = isovalues;
-  return std::make_shared<const LightFile>(std::move(light));
-}
-
-class ViewerTest : public testing::Test {
- protected:
-  void SetUp() override {
-    if (!context_) GTEST_SKIP() << context_.why();
-    target_.emplace();
-  }
-
-  /// At rest, looking from -y.
-  void look(const std::function<void(ViewerSettings&)>& set, std::shared_ptr<const LightFile> light = nullptr,
-            const std::string& volume = kBall) {
-    ViewerSettings settings;
-    set(settings);
-    settings.azimuth_deg = 0.0;
-    settings.elevation_deg = 0.0;
-    if (!settings.isovalue && volume == kBall) settings.isovalue = -0.4;
-    Document document = make_document(read_stored_volume(volume));
-    if (light) document.light = known_light(std::move(light));
-    viewer_ = std::make_unique<Viewer>(std::move(document), settings, stages_, [] {});
-    rest();
-  }
-  void rest() {
-    do {
-      static_cast<void>(viewer_->update());
-      std::this_thread::sleep_for(std::chrono::milliseconds(1));
-    } while (!viewer_->settled());
-  }
-  void act(Action action) {
-    viewer_->act(action);
-    rest();
-  }
-  using Colour = std::array<int, 3>;
-  Colour pixel(int x, int y) {
-    viewer_->draw_surface({kSize, kSize, 1.0});
-    target_->read();
-    const auto& found = target_->colours[std::size_t(y) * kSize + std::size_t(x)];
-    return {found[0], found[1], found[2]};
-  }
-  Colour middle() { return pixel(kSize / 2, kSize / 2); }
-  Colour corner() { return pixel(1, 1); }
-  std::vector<std::string> texts() { return viewer_->texts(); }
-  std::string left_name() { return viewer_->name_of(make_panes(Layout::kGlobal, kSize, kSize)[0]); }
-
-  const test::EglContext context_;
-  Stages stages_ = builtin_stages();
-  std::optional<Target> target_;
-  std::unique_ptr<Viewer> viewer_;
-};
-
-void expect_shown(const std::array<int, 3>& found, const Vec3f& radiance) {
-  for (int c = 0; c < 3; ++c)
-    EXPECT_NEAR(found[std::size_t(c)], srgb_code(radiance[c]), 1) << "channel " << c << ", one code for rounding";
-}
 
 TEST_F(ViewerTest, ShowsExactLightInTheColoursOfTheScene) {
   Scene scene;
@@ -131,7 +57,6 @@ TEST_F(ViewerTest, HasOneOuterSideForMeshAndExactLightAndDrafts) {
   act(Action::kBake);
   EXPECT_EQ(left_name(), "global light");
   expect_shown(middle(), dim);
-  EXPECT_THAT(texts(), Each(Not(HasSubstr("--outer")))) << "the draft is of that side";
   look([&](ViewerSettings& s) {
     s.outer = OuterSide::kHigher;
     s.scene = both;
@@ -183,6 +108,28 @@ TEST_F(ViewerTest, CallsLightLocalUntilThereIsAnother) {
   EXPECT_EQ(left_name(), "global light, exact");
 }
 
+TEST_F(ViewerTest, RefusesALightOfTheOtherSideAlone) {
+  EXPECT_THROW(look([](ViewerSettings& s) { s.outer = OuterSide::kHigher; }, dim_light({})), InvalidInput);
+}
+
+TEST_F(ViewerTest, ShowsLocalLightUntilGlobalLightIsAskedFor) {
+  look([](ViewerSettings& s) {
+    s.layout = Layout::kLocal;
+    s.exact_light = true;
+  });
+  EXPECT_EQ(viewer_->layout(), Layout::kLocal);
+  act(Action::kToggleLight);
+  EXPECT_EQ(viewer_->layout(), Layout::kGlobal);
+  act(Action::kToggleLight);
+  act(Action::kIsovalueUp);
+  EXPECT_EQ(viewer_->layout(), Layout::kLocal) << "also where light was traced again";
+  act(Action::kBake);
+  EXPECT_EQ(viewer_->layout(), Layout::kGlobal);
+  look([](ViewerSettings&) {});
+  act(Action::kExactLight);
+  EXPECT_EQ(viewer_->layout(), Layout::kGlobal);
+}
+
 TEST_F(ViewerTest, TakesMessagesAwayAtTheNextInputOrAfterSomeTime) {
   look([&](ViewerSettings& s) { s.message_seconds = 0.2; });
   const auto said = [&] {
@@ -221,17 +168,6 @@ TEST_F(ViewerTest, SaysThatAnIsovalueIsOutsideTheValues) {
   EXPECT_THAT(texts(), Contains(HasSubstr("isovalue 5 is outside the values")));
   look([&](ViewerSettings& s) { s.isovalue = -0.3; });
   EXPECT_THAT(texts(), Each(Not(HasSubstr("outside"))));
-}
-
-TEST_F(ViewerTest, ExposesGlobalLightAndNotItsGroundAsTheRaycasterDoes) {
-  look([&](ViewerSettings& s) { s.exposure_stops = -1.0; }, dim_light({}));
-  expect_shown(corner(), Vec3f(0.2f));
-  act(Action::kToggleLight);
-  expect_shown(corner(), Vec3f(0.2f));
-  const Colour local = middle();
-  act(Action::kBrighter);
-  EXPECT_EQ(middle(), local);
-  EXPECT_THAT(texts(), Contains(HasSubstr("-0.67 stops")));
 }
 
 TEST_F(ViewerTest, SavesNoColoursOfALightOfOtherIsovalues) {

@@ -11,7 +11,7 @@
 #include <utility>
 
 #include "app/window.h"
-#include "gl/read_pixels.h"
+#include "gl/picture.h"
 
 namespace isolux::viewer {
 namespace {
@@ -79,17 +79,18 @@ class App final : public WindowListener {
     window_.set_title(viewer_.title());
     window_.swap();
     if (viewer_.take_screenshot_request()) {
-      viewer_.save("png", [&](const std::string& path) { write_png(picture(), path); });
+      const WindowSize size = window_.size();
+      viewer_.save("png", [&](const std::string& path) { write_png(picture(size.width, size.height), path); });
       dirty_ = true;
       Window::wake();
     }
   }
 
-  /// Draws the surface alone into the hidden half of the window's picture.
-  [[nodiscard]] Image picture() {
-    const WindowSize size = window_.size();
-    viewer_.draw_surface(size);
-    return read_pixels(size.width, size.height);
+  /// The surface alone, also where the window is smaller or lies behind another.
+  [[nodiscard]] Image picture(int width, int height) {
+    return draw_picture(width, height, [&](const glm::ivec2& first) {
+      viewer_.draw_surface({.width = width, .height = height}, first);
+    });
   }
 
   /// \throw Error rather than that somebody takes what was not finished for what was asked for
@@ -98,7 +99,7 @@ class App final : public WindowListener {
     if (!viewer_.settled())
       throw Error(fmt::format("{}: not written: the window was closed before its picture was finished", path));
     if (!viewer_.failure().empty()) throw Error(fmt::format("{}: not written: {}", path, viewer_.failure()));
-    const Image image = picture();
+    const Image image = picture(settings_.width, settings_.height);
     write_atomically_by_name(path, [&](const std::string& temporary) { write_png(image, temporary); });
   }
 

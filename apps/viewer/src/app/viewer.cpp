@@ -58,7 +58,8 @@ void Viewer::start(Document document) {
   const std::shared_ptr<const ViewedVolume> volume = document_.volume;
   const Lattice& lattice = volume->lattice();
   renderer_ = std::move(renderer);
-  layout_ = Layout::kLocal;
+  layout_ = document_.light || wants_exact_ ? Layout::kGlobal : Layout::kLocal;
+  screenshot_ = false;
   lighted_.scene = settings_.scene.value_or(Scene{});
   lighted_.outer = outer_side(document_, lighted_.scene, settings_.outer);
   const ValueRange range = document_.histogram.range;
@@ -129,6 +130,7 @@ void Viewer::act(Action action) {
       break;
     case Action::kScreenshot:
       screenshot_ = true;
+      if (!worker_->idle()) say("the picture is saved when its surface is there");
       break;
     case Action::kExport:
       export_shown();
@@ -238,6 +240,11 @@ bool Viewer::update_surface() {
 
 std::string Viewer::failure() const { return shown_.surface.error.empty() ? exact_failure_ : shown_.surface.error; }
 
-bool Viewer::take_screenshot_request() { return std::exchange(screenshot_, false); }
+bool Viewer::take_screenshot_request() {
+  if (!worker_->idle() || !std::exchange(screenshot_, false)) return false;
+  if (shown_.surface.error.empty()) return true;
+  say(fmt::format("not saved: {}", shown_.surface.error));
+  return false;
+}
 
 }  // namespace isolux::viewer

@@ -61,16 +61,17 @@ class Viewer {
   [[nodiscard]] std::string failure() const;
   /// Draws everything into the current framebuffer.
   void draw(const WindowSize& size);
-  /// Draws the surface alone, without slider and text.
-  void draw_surface(const WindowSize& size);
+  /// Draws the surface alone, without slider and text, into a framebuffer that is the picture from pixel `first` on.
+  void draw_surface(const WindowSize& size, const glm::ivec2& first = glm::ivec2(0));
 
   [[nodiscard]] std::string title() const;
   /// What is said over the picture, one text a label: progress, message, advice, warnings.
   [[nodiscard]] std::vector<std::string> texts() const;
+  [[nodiscard]] Layout layout() const { return layout_; }
   /// What a pane is called.
   [[nodiscard]] std::string name_of(const Pane& pane) const;
   [[nodiscard]] bool quit() const { return quit_; }
-  /// Whether a picture was asked for; once.
+  /// Whether a picture was asked for; once, and not before its surface is there.
   [[nodiscard]] bool take_screenshot_request();
 
  private:
@@ -86,6 +87,8 @@ class Viewer {
   void start(Document document);
   void request_surface();
   void take_light(KnownLight light);
+  /// Global light was asked for: shown from now on, or from when it is there, until local light is asked for.
+  void show_global();
   void forget_exact_light();
   void replace_light(KnownLight draft);
   void bring_light_back();
@@ -101,7 +104,7 @@ class Viewer {
   [[nodiscard]] std::optional<Scene> draft_scene() const;
   void export_shown();
   [[nodiscard]] VertexLight light_to_save() const;
-  void draw_pane(const Pane& pane, int height);
+  void draw_pane(const Pane& pane, int height, const glm::ivec2& first);
   void draw_slider(const WindowSize& size);
   void draw_texts(const WindowSize& size);
   void draw_help(const WindowSize& size);

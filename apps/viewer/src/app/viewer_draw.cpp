@@ -23,15 +23,15 @@ bool Viewer::lit_here() const { return shown_.exact || has_light_of(document_, s
 
 Lighting Viewer::lighting_of(const Pane& pane) const { return lit_here() ? pane.lighting : Lighting::kLocal; }
 
-void Viewer::draw_surface(const WindowSize& size) {
-  for (const Pane& pane : make_panes(layout_, size.width, size.height)) draw_pane(pane, size.height);
+void Viewer::draw_surface(const WindowSize& size, const glm::ivec2& first) {
+  for (const Pane& pane : make_panes(layout_, size.width, size.height)) draw_pane(pane, size.height, first);
   glViewport(0, 0, size.width, size.height);
 }
 
-void Viewer::draw_pane(const Pane& pane, int height) {
+void Viewer::draw_pane(const Pane& pane, int height, const glm::ivec2& first) {
   SurfaceView view;
   view.style = style_;
-  view.colour = surface_colour_of(document_, lighted_.scene, float(slider_->value()));
+  view.colour = surface_colour_of(document_, lighted_.scene, shown_.surface.settings.isovalue);
   view.lighting = lighting_of(pane);
   // As in isolux render it is of global light alone, not of the ground behind.
   view.exposure = view.lighting == Lighting::kGlobal ? float(std::exp2(exposure_stops_)) : 1.0f;
@@ -39,11 +39,11 @@ void Viewer::draw_pane(const Pane& pane, int height) {
   trackball_->reframe(
       orbit_camera(document_.volume->lattice(), settings_.azimuth_deg, settings_.elevation_deg, view.aspect));
   view.camera = trackball_->camera();
-  const int left = int(pane.box.x);
+  const int left = int(pane.box.x) - first.x;
   const int width = std::max(int(pane.box.width), 1);
   const float ground = float(srgb_code(kBackground)) / 255.0f;
-  glViewport(left, 0, width, height);
-  glScissor(left, 0, width, height);
+  glViewport(left, -first.y, width, height);
+  glScissor(left, -first.y, width, height);
   glEnable(GL_SCISSOR_TEST);
   glClearColor(ground, ground, ground, 1.0f);
   glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);

@@ -27,6 +27,9 @@ void Viewer::take_light(KnownLight light) {
   renderer_->set_light(shown_grid(file, lighted_.outer), inner);
   forget_exact_light();
   document_.light = std::move(light);
+}
+
+void Viewer::show_global() {
   if (layout_ == Layout::kLocal) layout_ = Layout::kGlobal;
 }
 
@@ -64,6 +67,7 @@ void Viewer::start_bake() {
   if (replaced_) return bring_light_back();
   const std::optional<Scene> scene = draft_scene();
   if (!scene) return say("the light given does not tell its whole scene: a draft needs --scene SCENE.json");
+  show_global();
   const DraftLimits limits{.texels_an_axis = largest_texture()};
   bake_ = std::make_unique<BackgroundTask<KnownLight>>(
       in_background(settings_.run),
@@ -111,6 +115,7 @@ void Viewer::bring_light_back() {
   } catch (const std::exception& error) {
     return say(fmt::format("the light given cannot be shown: {}", error.what()));
   }
+  show_global();
   replaced_.reset();
   is_draft_ = false;
   say("the light given again");
@@ -120,9 +125,9 @@ void Viewer::toggle_exact_light() {
   wants_exact_ = !wants_exact_;
   exact_failure_.clear();
   forget_exact_light();
-  if (wants_exact_) return;
+  if (wants_exact_) return show_global();
   renderer_->set_exact_light({});
-  if (!document_.light) layout_ = Layout::kLocal;
+  if (!document_.light && !bake_) layout_ = Layout::kLocal;
 }
 
 void Viewer::start_exact_light() {
@@ -147,7 +152,6 @@ bool Viewer::update_exact_light() {
     renderer_->set_exact_light(outcome->result->radiance);
     shown_.radiance = std::move(outcome->result->radiance);
     shown_.exact = true;
-    if (layout_ == Layout::kLocal) layout_ = Layout::kGlobal;
   } catch (const std::exception& error) {
     wants_exact_ = false;
     exact_failure_ = error.what();

@@ -20,12 +20,14 @@ std::string short_name(const std::string& name) {
   return file.empty() ? name : file;
 }
 
+double label_width(double size, const std::string& text) { return (text_width(text) + 2.0 * kPad) * size; }
+
 /// Text on a light ground, so that it reads over any surface. Returns the height it takes.
 double label(Overlay& overlay, double x, double y, double size, const std::string& text) {
   const auto lines = double(1 + std::count(text.begin(), text.end(), '\n'));
   const double pad = kPad * size;
   const double height = (lines * kLineHeight - 2.0) * size + 2.0 * pad;
-  overlay.rectangle({x, y, text_width(text) * size + 2.0 * pad, height}, kPaper);
+  overlay.rectangle({x, y, label_width(size, text), height}, kPaper);
   overlay.text(x + pad, y + pad, size, text, kInk);
   return height;
 }
@@ -78,8 +80,6 @@ std::vector<std::string> Viewer::warnings() const {
     const ValueRange lit = *light.grid.detail.isovalues;
     result.push_back(
         fmt::format("the light is of isovalues {:.7g} to {:.7g}: local light is shown", lit.low, lit.high));
-  } else if (grid_of(light, lighted_.outer) == nullptr) {
-    result.emplace_back("the light is of the side that --outer calls the inner one");
   }
   return result;
 }
@@ -103,8 +103,11 @@ std::vector<std::string> Viewer::texts() const {
 void Viewer::draw_texts(const WindowSize& size) {
   const double font = 1.5 * size.scale;
   const double margin = 10.0 * size.scale;
+  double names_end = 0.0;
   for (const Pane& pane : make_panes(layout_, size.width, size.height)) {
-    label(overlay_, pane.box.x + margin, margin, font, name_of(pane));
+    const std::string name = name_of(pane);
+    label(overlay_, pane.box.x + margin, margin, font, name);
+    names_end = pane.box.x + margin + label_width(font, name);
     if (pane.box.x > 0.0) overlay_.rectangle({pane.box.x - size.scale, 0.0, 2.0 * size.scale, pane.box.height}, kInk);
   }
   const double most = (size.width - 2.0 * margin) / font - 2.0 * kPad;
@@ -112,13 +115,13 @@ void Viewer::draw_texts(const WindowSize& size) {
   for (const std::string& text : texts())
     y += 4.0 * size.scale + label(overlay_, margin, y, font, wrap_text(text, most));
   const std::string value = "isovalue " + slider_->text();
-  const double width = (text_width(value) + 2.0 * kPad) * font;
+  const double width = label_width(font, value);
   const double x = std::clamp(slider_->position() - width / 2.0, 0.0, std::max(size.width - width, 0.0));
   label(overlay_, x, slider_->track().y - 64.0 * size.scale, font, value);
-  if (!help_) {
-    const std::string hint = "h: help";
-    label(overlay_, size.width - margin - (text_width(hint) + 2.0 * kPad) * font, margin, font, hint);
-  }
+  // Left out where it would lie over a name.
+  const std::string hint = "h: help";
+  const double hint_x = size.width - margin - label_width(font, hint);
+  if (!help_ && hint_x > names_end + margin) label(overlay_, hint_x, margin, font, hint);
 }
 
 void Viewer::draw_help(const WindowSize& size) {

@@ -6,7 +6,9 @@
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace isolux::viewer {
 namespace {
@@ -65,6 +67,31 @@ void on_refresh(GLFWwindow* window) { listener(window).on_redraw(); }
 
 void on_size(GLFWwindow* window, int /*width*/, int /*height*/) { listener(window).on_redraw(); }
 
+/// How far the screens reach together; no limit where there are none.
+struct Desktop {
+  int width = std::numeric_limits<int>::max();
+  int height = std::numeric_limits<int>::max();
+};
+
+Desktop desktop() {
+  int count = 0;
+  GLFWmonitor** monitors = glfwGetMonitors(&count);
+  int low[2] = {std::numeric_limits<int>::max(), std::numeric_limits<int>::max()};
+  int high[2] = {std::numeric_limits<int>::min(), std::numeric_limits<int>::min()};
+  for (int i = 0; i < count; ++i) {
+    const GLFWvidmode* mode = glfwGetVideoMode(monitors[i]);
+    if (mode == nullptr) return {};
+    int place[2] = {0, 0};
+    glfwGetMonitorPos(monitors[i], &place[0], &place[1]);
+    const int size[2] = {mode->width, mode->height};
+    for (int a = 0; a < 2; ++a) {
+      low[a] = std::min(low[a], place[a]);
+      high[a] = std::max(high[a], place[a] + size[a]);
+    }
+  }
+  return count == 0 ? Desktop{} : Desktop{.width = high[0] - low[0], .height = high[1] - low[1]};
+}
+
 }  // namespace
 
 WindowSystem::WindowSystem() {
@@ -82,6 +109,10 @@ Window::Window(int width, int height, const std::string& title, WindowListener& 
   glfwWindowHint(GLFW_OPENGL_FORWARD_COMPAT, GLFW_TRUE);
   glfwWindowHint(GLFW_SCALE_TO_MONITOR, GLFW_TRUE);
   glfwWindowHint(GLFW_SAMPLES, 4);
+  // What nobody sees would take memory all the same.
+  const Desktop most = desktop();
+  width = std::min(width, most.width);
+  height = std::min(height, most.height);
   window_ = glfwCreateWindow(width, height, title.c_str(), nullptr, nullptr);
   if (window_ == nullptr) {
     // Some remote displays have no multisampling.

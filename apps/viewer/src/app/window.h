@@ -36,7 +36,7 @@ class WindowSystem {
 /// A window with a current OpenGL 3.3 core context, whose events go to the listener.
 class Window {
  public:
-  /// Size in screen coordinates. \throw GlError
+  /// Size in screen coordinates, at most that of the screens. \throw GlError
   Window(int width, int height, const std::string& title, WindowListener& listener);
   Window(const Window&) = delete;
   Window& operator=(const Window&) = delete;
