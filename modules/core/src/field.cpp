@@ -82,8 +82,9 @@ bool TrilinearFieldOf<Value>::is_flat_around(const Vec3& index) const {
   Index3 first;
   Index3 last;
   for (int a = 0; a < 3; ++a) {
-    first[a] = std::clamp(int(std::ceil(index[a])) - 1, 0, lattice_.size[a] - 1);
-    last[a] = std::clamp(int(std::floor(index[a])) + 1, 0, lattice_.size[a] - 1);
+    const double x = within_axis(index[a], lattice_.size[a]);
+    first[a] = std::max(int(std::ceil(x)) - 1, 0);
+    last[a] = std::min(int(std::floor(x)) + 1, lattice_.size[a] - 1);
   }
   const Value value = data_[lattice_.offset(first.x, first.y, first.z)];
   for (int k = first.z; k <= last.z; ++k) {

@@ -6,6 +6,12 @@
 
 namespace isolux {
 
+IlluminationGrid::IlluminationGrid(const Lattice& texels, int channel_count)
+    : lattice(texels), channels(channel_count) {
+  if (channels < 1) throw InvalidInput(fmt::format("a light of {} channels: allowed are 1 and 3", channels));
+  values.assign(require_countable(texels) * std::size_t(channels), 0.0f);
+}
+
 void require_complete(const IlluminationGrid& light) {
   const Index3& size = light.lattice.size;
   if (size.x < 1 || size.y < 1 || size.z < 1)

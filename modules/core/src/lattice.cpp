@@ -26,9 +26,18 @@ void require_spanning(const IndexToWorld& frame, std::string_view what) {
                                  text(frame.axes[1]), text(frame.axes[2]), text(frame.origin)));
 }
 
+std::size_t require_countable(const Lattice& lattice) {
+  constexpr std::size_t kMost = std::size_t(1) << 48;  // what addresses reach; products of two sizes fit beside it
+  const Index3& size = lattice.size;
+  const bool is_size = size.x >= 0 && size.y >= 0 && size.z >= 0;
+  const std::size_t plane = is_size ? std::size_t(size.x) * std::size_t(size.y) : 0;
+  if (is_size && (plane == 0 || std::size_t(size.z) <= kMost / plane)) return lattice.count();
+  throw InvalidInput(fmt::format("a lattice of {}x{}x{} points: allowed are sizes of 0 and more, and 2^48 points",
+                                 size.x, size.y, size.z));
+}
+
 void require_values(const Lattice& lattice, std::size_t values) {
-  const bool is_size = lattice.size.x >= 0 && lattice.size.y >= 0 && lattice.size.z >= 0;
-  if (is_size && values == lattice.count()) return;
+  if (values == require_countable(lattice)) return;
   throw InvalidInput(fmt::format("{} values for a lattice of {}x{}x{} points: one a point is wanted", values,
                                  lattice.size.x, lattice.size.y, lattice.size.z));
 }

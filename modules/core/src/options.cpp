@@ -30,6 +30,8 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
 
 template <class Number>
 std::optional<Number> whole_number(std::string_view text) {
+  // from_chars takes no plus sign, but people and programs write one.
+  if (text.size() > 1 && text[0] == '+' && text[1] != '-' && text[1] != '+') text.remove_prefix(1);
   Number value{};
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
@@ -137,9 +139,7 @@ std::string nearest_word(std::string_view word, const std::vector<std::string>& 
 }
 
 double parse_number(std::string_view what, std::string_view text) {
-  // from_chars takes no plus sign, but people and programs write one.
-  const bool plus = text.size() > 1 && text[0] == '+' && text[1] != '-' && text[1] != '+';
-  const auto value = whole_number<double>(text.substr(plus ? 1 : 0));
+  const auto value = whole_number<double>(text);
   if (!value || !std::isfinite(*value))
     throw InvalidInput(fmt::format("{} = '{}': allowed is a finite number", what, text));
   return *value;

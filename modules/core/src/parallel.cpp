@@ -72,7 +72,7 @@ Run part_of(const Run& run, double begin, double end) {
 
 std::size_t block_count(std::size_t count, std::size_t block_size) {
   if (block_size == 0) throw InvalidInput("blocks of 0 items: allowed is 1 and more");
-  return (count + block_size - 1) / block_size;
+  return count / block_size + (count % block_size != 0 ? 1 : 0);  // without sums, which may be beyond a size_t
 }
 
 int thread_count(const Run& run) { return run.threads > 0 ? run.threads : tbb::info::default_concurrency(); }
@@ -84,7 +84,8 @@ void parallel_blocks(std::size_t count, std::size_t block_size, const Run& run, 
   std::mutex reporting;
   const auto work = [&](std::size_t b) {
     throw_if_stopped(run);
-    body({.begin = b * block_size, .end = std::min(count, (b + 1) * block_size), .index = b});
+    const std::size_t begin = b * block_size;
+    body({.begin = begin, .end = begin + std::min(block_size, count - begin), .index = b});
     const std::size_t now = ++done;
     if (!run.progress || stage.empty()) return;
     // A thread that finds another one reporting lets it: progress is for people.

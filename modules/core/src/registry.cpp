@@ -9,6 +9,7 @@ namespace {
 [[noreturn]] void refuse(std::string_view stage, std::string_view name, const std::vector<std::string>& there_are) {
   const std::string near = nearest_word(name, there_are);
   const std::string what = name.empty() ? "has a default" : fmt::format("is called '{}'", name);
+  if (there_are.empty()) throw InvalidInput(fmt::format("no {} {}; there are none at all", stage, what));
   throw InvalidInput(fmt::format("no {} {}{}; there are {}", stage, what,
                                  near.empty() ? "" : fmt::format(" (did you mean '{}'?)", near),
                                  fmt::join(there_are, ", ")));

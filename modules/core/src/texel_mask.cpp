@@ -57,7 +57,7 @@ void find_extremes(const Volume& volume, const Window& y, const Window& z, Extre
 }  // namespace
 
 TexelMask::TexelMask(const Index3& size)
-    : size_(size), words_((std::size_t(size.x) * std::size_t(size.y) * std::size_t(size.z) + 63) / 64, 0) {}
+    : size_(size), words_((require_countable({.size = size, .frame = {}}) + 63) / 64, 0) {}
 
 std::size_t TexelMask::count() const {
   return std::transform_reduce(words_.begin(), words_.end(), std::size_t(0), std::plus<>(),

@@ -56,6 +56,13 @@ TEST(Misuse, PlacesThatAreNoNumbersCountAsTheAxisBeginning) {
   IlluminationGrid light(cell_lattice(volume.lattice()), 1);
   light.values.front() = 2.0f;
   EXPECT_EQ(light.at_world(Vec3(kNotANumber)).x, 2.0f);
+  // Flat but at the first grid point: whatever lies beyond the box is as flat as its face.
+  Volume flat{.values = Grid<float>(Lattice{.size = {6, 6, 6}, .frame = {}}), .name = "mine"};
+  flat.values(0, 0, 0) = 1.0f;
+  const TrilinearField mostly_flat(flat);
+  EXPECT_TRUE(mostly_flat.is_flat_around(Vec3(1e300)));
+  EXPECT_FALSE(mostly_flat.is_flat_around(Vec3(-1e300)));
+  EXPECT_FALSE(mostly_flat.is_flat_around(Vec3(kNotANumber)));
 }
 
 TEST(Misuse, LightsThatAreNotCompleteAreRefused) {
@@ -70,6 +77,71 @@ TEST(Misuse, LightsThatAreNotCompleteAreRefused) {
 
 TEST(Misuse, BlocksOfNothingAreRefused) {
   EXPECT_THROW(parallel_blocks(10, 0, isolux::Run{}, "", [](const Block&) {}), InvalidInput);
+}
+
+TEST(Misuse, SizesThatNoMemoryHoldsAreRefused) {
+  for (const Index3 size : {Index3(-1, 2, 3), Index3(-1, -2, 3), Index3(1 << 30, 1 << 30, 16)}) {
+    const Lattice lattice{.size = size, .frame = {}};
+    EXPECT_THROW(Grid<float>{lattice}, InvalidInput);
+    EXPECT_THROW(Grid<float>(lattice, std::vector<float>(6)), InvalidInput);
+    EXPECT_THROW(Grid<float>(lattice, std::vector<float>{}), InvalidInput);
+    EXPECT_THROW(IlluminationGrid(lattice, 1), InvalidInput);
+    EXPECT_THROW(TexelMask{size}, InvalidInput);
+  }
+  EXPECT_THROW(IlluminationGrid({.size = Index3(2), .frame = {}}, -1), InvalidInput);
+  EXPECT_EQ(Grid<float>({.size = {0, 1 << 30, 1 << 30}, .frame = {}}).values().size(), 0u);
+}
+
+TEST(Misuse, AVolumeThatWasMovedIsNotUsable) {
+  Volume volume = rising_volume();
+  const Volume taken = std::move(volume);
+  EXPECT_THROW(require_usable(volume), InvalidInput);  // NOLINT(bugprone-use-after-move)
+  EXPECT_NO_THROW(require_usable(taken));
+  Volume other = rising_volume();
+  volume = std::move(other);
+  EXPECT_NO_THROW(require_usable(volume));
+  EXPECT_EQ(other.lattice().count(), 0u);  // NOLINT(bugprone-use-after-move)
+}
+
+Sites two_sites() {
+  return {.positions = {Vec3f(0.0f), Vec3f(3.0f)}, .isovalues = {1.0f, 2.0f}, .normals = {Vec3f(0.0f), Vec3f(1.0f)}};
+}
+
+TEST(Misuse, SitesThatNoTracerTakesAreNamed) {
+  const Lattice box = rising_volume().lattice();
+  EXPECT_NO_THROW(require_usable(two_sites(), box, "sampler mine"));
+  const auto error = [&](auto spoil) -> std::string {
+    Sites sites = two_sites();
+    spoil(sites);
+    try {
+      require_usable(sites, box, "sampler mine");
+    } catch (const InvalidInput& what) {
+      return what.what();
+    }
+    return "";
+  };
+  EXPECT_EQ(error([](Sites& s) { s.positions[1].y = 3.5f; }),
+            "sampler mine: site 1 at (3, 3.5, 3) is not in the box, (0, 0, 0) to (3, 3, 3)");
+  EXPECT_NE(error([](Sites& s) { s.positions[0].z = -0.001f; }), "");
+  EXPECT_NE(error([](Sites& s) { s.positions[0].x = float(kNotANumber); }), "");
+  EXPECT_NE(error([](Sites& s) { s.positions[0].x = INFINITY; }), "");
+  EXPECT_EQ(error([](Sites& s) { s.isovalues[0] = INFINITY; }),
+            "sampler mine: site 0 at (0, 0, 0) has isovalue inf: it must be finite");
+  EXPECT_NE(error([](Sites& s) { s.normals[1].y = float(kNotANumber); }), "");
+  EXPECT_NE(error([](Sites& s) { s.normals.pop_back(); }), "");
+  EXPECT_NE(error([](Sites& s) { s.isovalues.push_back(0.0f); }), "");
+}
+
+TEST(Misuse, NumbersThatNoSiteHasAreRefused) {
+  const std::vector<std::size_t> second{1};
+  const std::vector<std::size_t> third{2};
+  EXPECT_EQ(some_of(two_sites(), second).isovalues, std::vector<float>{2.0f});
+  EXPECT_THROW((void)some_of(two_sites(), third), InvalidInput);
+}
+
+TEST(Misuse, AFieldOfATemporaryDoesNotCompile) {
+  EXPECT_TRUE((std::is_constructible_v<TrilinearField, const Volume&>));
+  EXPECT_FALSE((std::is_constructible_v<TrilinearField, Volume>));
 }
 
 class Stage {
@@ -92,6 +164,12 @@ TEST(Misuse, NamesOfBackendsAreChecked) {
     FAIL();
   } catch (const InvalidInput& error) {
     EXPECT_EQ(std::string(error.what()), "no stage has a default; there are first");
+  }
+  try {
+    static_cast<void>(Registry<Stage>().create("first"));
+    FAIL();
+  } catch (const InvalidInput& error) {
+    EXPECT_EQ(std::string(error.what()), "no stage is called 'first'; there are none at all");
   }
   registry.set_default("first");
   EXPECT_THROW(registry.set_default("frist"), InvalidInput);

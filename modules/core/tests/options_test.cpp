@@ -67,6 +67,12 @@ TEST(Registry, MakesBackendsWithTheirDefaultsAndSettings) {
   EXPECT_EQ(registry().create()->answer(), -1);
 }
 
+TEST(Registry, TakesNumbersWithASign) {
+  EXPECT_EQ(registry().create("mixer", {{"count", "+7"}, {"weight", "+0.25"}})->answer(), 7.25);
+  for (const char* text : {"+", "+-7", "++7", " +7"})
+    EXPECT_THROW((void)registry().create("mixer", {{"count", text}}), InvalidInput) << text;
+}
+
 TEST(Registry, NamesWhatIsAllowedWhenABackendIsUnknown) {
   EXPECT_THAT([] { static_cast<void>(registry().create("mixr")); },
               ThrowsMessage<InvalidInput>(

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <limits>
 #include <vector>
 
 namespace isolux {
@@ -20,6 +21,16 @@ TEST(ParallelBlocks, CoverEveryItemOnceForAnyNumberOfThreads) {
       for (std::size_t i = block.begin; i < block.end; ++i) ++seen[i];
     });
     for (const auto& count : seen) EXPECT_EQ(count, 1);
+  }
+}
+
+TEST(ParallelBlocks, MayBeAsLargeAsANumberCanBe) {
+  constexpr std::size_t kMost = std::numeric_limits<std::size_t>::max();
+  for (const std::size_t size : {kMost, kMost - 3}) {
+    std::size_t items = 0;
+    parallel_blocks(5, size, isolux::Run{}, "", [&](const Block& block) { items += block.end - block.begin; });
+    EXPECT_EQ(items, 5u);
+    EXPECT_EQ(block_count(5, size), 1u);
   }
 }
 

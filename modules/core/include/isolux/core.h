@@ -4,6 +4,7 @@
 
 #include <isolux/core/error.h>
 #include <isolux/core/field.h>
+#include <isolux/core/field_points.h>
 #include <isolux/core/grid.h>
 #include <isolux/core/illumination_grid.h>
 #include <isolux/core/lattice.h>
@@ -17,6 +18,7 @@
 #include <isolux/core/sample_set.h>
 #include <isolux/core/spread_labels.h>
 #include <isolux/core/stopwatch.h>
+#include <isolux/core/surface_colour.h>
 #include <isolux/core/texel_mask.h>
 #include <isolux/core/vec.h>
 #include <isolux/core/volume.h>

@@ -68,6 +68,7 @@ class TrilinearFieldOf {
 class TrilinearField : public TrilinearFieldOf<float> {
  public:
   explicit TrilinearField(const Volume& volume) : TrilinearFieldOf<float>(volume.lattice(), volume.values.values()) {}
+  explicit TrilinearField(Volume&& volume) = delete;
 };
 
 }  // namespace isolux

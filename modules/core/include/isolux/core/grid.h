@@ -27,16 +27,29 @@ class GridView {
   std::span<T> values_;
 };
 
-/// The owning grid.
+/// The owning grid. What it is moved out of has no points.
 template <class T>
 class Grid {
  public:
   Grid() = default;
-  explicit Grid(const Lattice& lattice, T value = T{}) : lattice_(lattice), values_(lattice.count(), value) {}
+  /// \throw InvalidInput for sizes below 0 and more points than memory can be asked for
+  explicit Grid(const Lattice& lattice, T value = T{})
+      : lattice_(lattice), values_(require_countable(lattice), value) {}
   /// \throw InvalidInput unless there is one value a point
   Grid(const Lattice& lattice, std::vector<T> values) : lattice_(lattice), values_(std::move(values)) {
     require_values(lattice, values_.size());
   }
+  Grid(const Grid&) = default;
+  Grid& operator=(const Grid&) = default;
+  Grid(Grid&& other) noexcept
+      : lattice_(std::exchange(other.lattice_, {})), values_(std::exchange(other.values_, {})) {}
+  Grid& operator=(Grid&& other) noexcept {
+    lattice_ = std::exchange(other.lattice_, {});
+    values_ = std::exchange(other.values_, {});
+    return *this;
+  }
+  ~Grid() = default;
+
   [[nodiscard]] const Lattice& lattice() const { return lattice_; }
   [[nodiscard]] Index3 size() const { return lattice_.size; }
   [[nodiscard]] std::span<T> values() { return values_; }

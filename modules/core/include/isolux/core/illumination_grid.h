@@ -53,8 +53,8 @@ struct IlluminationGrid {
   LightDetail detail;
 
   IlluminationGrid() = default;
-  IlluminationGrid(const Lattice& texels, int channel_count)
-      : lattice(texels), channels(channel_count), values(texels.count() * std::size_t(channel_count), 0.0f) {}
+  /// All black. \throw InvalidInput for sizes below 0, more texels than memory can be asked for, and channels below 1
+  IlluminationGrid(const Lattice& texels, int channel_count);
 
   /// e at a point in the texels' own index space (texel centres at integers), trilinear, clamped to the edge texels as
   /// GL_CLAMP_TO_EDGE does, the detail left aside. Grey grids give the same value three times. \pre require_complete().

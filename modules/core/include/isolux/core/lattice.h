@@ -40,6 +40,8 @@ struct Lattice {
 /// \throw InvalidInput, naming `what`, unless the axes span a volume: numbers whose determinant is not 0, with lengths
 /// that can be told from it
 void require_spanning(const IndexToWorld& frame, std::string_view what);
+/// lattice.count(). \throw InvalidInput for sizes below 0 and more points than memory can be asked for (2^48)
+[[nodiscard]] std::size_t require_countable(const Lattice& lattice);
 /// \throw InvalidInput unless there is one value a point
 void require_values(const Lattice& lattice, std::size_t values);
 

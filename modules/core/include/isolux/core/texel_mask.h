@@ -12,6 +12,7 @@ namespace isolux {
 /// A bit a texel of a lattice.
 class TexelMask {
  public:
+  /// None of them. \throw InvalidInput for sizes below 0 and more texels than memory can be asked for
   explicit TexelMask(const Index3& size);
 
   [[nodiscard]] bool operator[](std::size_t texel) const { return (words_[texel / 64] >> texel % 64 & 1) != 0; }
