@@ -35,6 +35,7 @@ double most_of_soft(const Environment& environment) {
   constexpr double kNone = std::numeric_limits<double>::infinity();
   const auto* image = std::get_if<ImageEnvironment>(&environment);
   if (image == nullptr) return kNone;
+  require_pixels(*image);
   const double most = kBright * mean_luminance(*image);
   const bool any = std::any_of(image->pixels.begin(), image->pixels.end(),
                                [most](const Vec3f& pixel) { return luminance(pixel) > most; });

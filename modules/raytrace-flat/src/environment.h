@@ -11,6 +11,9 @@ namespace isolux {
 /// Of a colour, by the weights of Rec. 709.
 [[nodiscard]] double luminance(const Vec3f& colour);
 
+/// \throw InvalidInput unless it has as many pixels as its size says, one at least
+void require_pixels(const ImageEnvironment& image);
+
 /// What an environment shines from where. Owns nothing of the scene, which must outlive it.
 class EnvironmentView {
  public:

@@ -16,6 +16,7 @@ static_assert(GatheredRays::kEscaped == wide::kEscaped);
 
 TraceCounters gather(const Volume& volume, const Sites& sites, const GatherSettings& settings, const Run& run,
                      const RaySink& sink) {
+  require_equal_lengths(sites);
   if (settings.rays < 1) throw InvalidInput(fmt::format("rays = {}: allowed is 1 and more", settings.rays));
   if (settings.first_ray < 0)
     throw InvalidInput(fmt::format("first_ray = {}: allowed is 0 and more", settings.first_ray));

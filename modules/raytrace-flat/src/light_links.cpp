@@ -6,8 +6,6 @@
 
 #include <algorithm>
 #include <bit>
-#include <map>
-#include <numeric>
 #include <optional>
 #include <utility>
 #include <variant>
@@ -19,6 +17,14 @@
 #include "wide/net_mean.h"
 
 namespace isolux {
+namespace {
+
+void require_scene_of(OuterSide outer, const Scene& scene) {
+  require_valid(scene);
+  if (scene.outer != outer) throw InvalidInput("the scene's outer side is not that of the light's links");
+}
+
+}  // namespace
 
 LightLinks::LightLinks(const Volume& volume, Sites sites, const LinkSettings& settings, const Run& run)
     : LightLinks(volume, std::move(sites), settings, run, WithoutProbes{}) {
@@ -46,6 +52,7 @@ LightLinks::LightLinks(const Volume& volume, Sites sites, const LinkSettings& se
       settings_(settings),
       seed_(run.seed),
       rounds_(std::make_unique<Rounds>()) {
+  require_equal_lengths(sites_);
   if (settings.rays < 1) throw InvalidInput(fmt::format("rays = {}: allowed is 1 and more", settings.rays));
   const int kept = settings.kept;
   if (kept < 0 || kept > settings.rays || !std::has_single_bit(unsigned(std::max(kept, 1))))
@@ -73,53 +80,6 @@ RoundRequest LightLinks::request(std::size_t first, std::size_t rays) const {
           .outer = settings_.outer,
           .question = question,
           .nets = settings_.nets};
-}
-
-void LightLinks::require_open(const char* what) const {
-  if (settings_.nets == RayNets::kInterleaved)
-    throw InvalidInput(fmt::format("links of interleaved nets take no more {}", what));
-  if (settings_.kept != 0) throw InvalidInput(fmt::format("links of which a part is kept take no more {}", what));
-}
-
-void LightLinks::extend(std::span<const std::uint32_t> sites, const Run& run) {
-  require_open("rays");
-  std::map<std::uint32_t, std::vector<std::uint32_t>> by_rays;
-  for (const std::uint32_t site : sites) by_rays[rays_[site]].push_back(site);
-  for (const auto& [rays, numbers] : by_rays) {
-    trace(rays, rays, numbers, run);
-    for (const std::uint32_t site : numbers) rays_[site] *= 2;
-  }
-  if (again_ == nullptr) return;
-  std::vector<std::uint32_t> doubled;
-  for (std::size_t p = 0; p < probes_.size(); ++p)
-    if (again_->rays_[p] != rays_[probes_[p]]) doubled.push_back(std::uint32_t(p));
-  Run quiet = run;
-  quiet.progress = {};
-  const TraceCounters before = again_->counters_;
-  again_->extend(doubled, quiet);
-  add(counters_, again_->counters_ - before);
-}
-
-void LightLinks::append(const Sites& more, const Run& run) {
-  if (settings_.ends == LinkEnds::kKept)
-    throw InvalidInput("links that know the sites at the texels take no more sites");
-  require_open("sites");
-  if (more.size() == 0) return;
-  std::vector<std::uint32_t> numbers(more.size());
-  std::iota(numbers.begin(), numbers.end(), std::uint32_t(sites_.size()));
-  sites_.positions.insert(sites_.positions.end(), more.positions.begin(), more.positions.end());
-  sites_.isovalues.insert(sites_.isovalues.end(), more.isovalues.begin(), more.isovalues.end());
-  sites_.normals.insert(sites_.normals.end(), more.normals.begin(), more.normals.end());
-  rays_.resize(sites_.size(), std::uint32_t(settings_.rays));
-  trace(0, std::size_t(settings_.rays), numbers, run);
-  if (again_ == nullptr) return;
-  const std::vector<std::size_t> probes = wide::choose_probes(more);
-  for (const std::size_t probe : probes) probes_.push_back(numbers.front() + probe);
-  Run quiet = run;
-  quiet.progress = {};
-  const TraceCounters before = again_->counters_;
-  again_->append(some_of(more, probes), quiet);
-  add(counters_, again_->counters_ - before);
 }
 
 std::size_t LightLinks::bytes() const {
@@ -192,10 +152,17 @@ Solution LightLinks::direct(const Scene& scene, const SolveSettings& settings, c
 SampleSet LightLinks::reflecting(const Scene& scene, std::span<const float> texels, const SolveSettings& settings,
                                  const Run& run) const {
   if (settings_.ends != LinkEnds::kAtTexels) throw InvalidInput("light is given at texels: the links must end there");
+  require_scene_of(settings_.outer, scene);
+  const std::size_t channels = is_grey(scene) ? 1 : 3;
+  const std::size_t wanted = rounds_->targets->texels().count() * channels;
+  if (texels.size() != wanted) {
+    throw InvalidInput(fmt::format("{} numbers of light at texels: allowed is one a texel and channel, {} in all",
+                                   texels.size(), wanted));
+  }
   Solution last;
   const SceneParts parts(scene);
-  reflect_last(parts, lamp_light(parts, settings, last.counters, run),
-               {.values = texels, .channels = is_grey(scene) ? 1u : 3u}, settings, last, run);
+  reflect_last(parts, lamp_light(parts, settings, last.counters, run), {.values = texels, .channels = channels},
+               settings, last, run);
   return std::move(last.samples);
 }
 
@@ -231,8 +198,7 @@ SampleSet LightLinks::reflected(const Scene& scene, const SampleSet& lamps, cons
 
 Solution LightLinks::solve(const Scene& scene, const SolveSettings& settings, const ToGrid& to_grid, const Run& run,
                            std::span<const float> start) const {
-  require_valid(scene);
-  if (scene.outer != settings_.outer) throw InvalidInput("the scene's outer side is not that of the light's links");
+  require_scene_of(settings_.outer, scene);
   if (settings.bounces < kAllBounces)
     throw InvalidInput(fmt::format("bounces = {}: allowed is -1 (all), 0 and more", settings.bounces));
   if (settings.bounces != 0 && settings_.ends == LinkEnds::kDropped)

@@ -82,13 +82,7 @@ void require_valid_environment(const Environment& environment) {
     require_colour("sky ground", sky->ground, kAnyBrightness);
   } else if (const auto* image = std::get_if<ImageEnvironment>(&environment)) {
     require_direction("environment image up", image->up);
-    if (image->width < 1 || image->height < 1 ||
-        image->pixels.size() != std::size_t(image->width) * std::size_t(image->height)) {
-      throw InvalidInput(
-          fmt::format("an environment image of {}x{} with {} pixels; it needs width times height, one at "
-                      "least",
-                      image->width, image->height, image->pixels.size()));
-    }
+    require_pixels(*image);
     for (const Vec3f& c : image->pixels) require_colour("environment image pixel", c, kAnyBrightness);
   }
 }
@@ -118,6 +112,15 @@ void require_valid_light(const Light& light) {
 
 }  // namespace
 
+void require_pixels(const ImageEnvironment& image) {
+  if (image.width >= 1 && image.height >= 1 &&
+      image.pixels.size() == std::size_t(image.width) * std::size_t(image.height))
+    return;
+  throw InvalidInput(
+      fmt::format("an environment image of {}x{} with {} pixels; it needs width times height, one at least",
+                  image.width, image.height, image.pixels.size()));
+}
+
 Vec3f IsovalueColour::at(float isovalue) const {
   const auto above = std::upper_bound(keys.begin(), keys.end(), isovalue,
                                       [](float value, const Key& key) { return value < key.isovalue; });
@@ -141,6 +144,7 @@ bool is_grey(const Scene& scene) {
 }
 
 Vec3f environment_radiance(const Environment& environment, const Vec3& towards) {
+  if (const auto* image = std::get_if<ImageEnvironment>(&environment)) require_pixels(*image);
   return Vec3f(EnvironmentView(environment).radiance(towards));
 }
 

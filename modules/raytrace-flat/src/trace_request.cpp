@@ -6,10 +6,7 @@
 namespace isolux {
 
 void require_usable(const Sites& sites, const TraceSettings& settings) {
-  if (sites.isovalues.size() != sites.size() || sites.normals.size() != sites.size()) {
-    throw InvalidInput(fmt::format("{} site positions with {} isovalues and {} normals; there must be one of each",
-                                   sites.size(), sites.isovalues.size(), sites.normals.size()));
-  }
+  require_equal_lengths(sites);
   if (settings.rays < 1) throw InvalidInput(fmt::format("rays = {}: allowed is 1 and more", settings.rays));
   if (settings.bounces < kAllBounces)
     throw InvalidInput(fmt::format("bounces = {}: allowed is -1 (all), 0 and more", settings.bounces));

@@ -7,3 +7,4 @@
 #include <isolux/raytrace_flat/level_set_intersector.h>
 #include <isolux/raytrace_flat/light_links.h>
 #include <isolux/raytrace_flat/scene.h>
+#include <isolux/raytrace_flat/trace_counters.h>

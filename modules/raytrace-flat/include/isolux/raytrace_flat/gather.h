@@ -58,7 +58,7 @@ using RaySink = std::function<void(const GatheredRays&)>;
 /// sites inside its box with unit normals (sites of normal zero are given to the sink with directions that mean
 /// nothing). Interleaved, a site's shift also follows from its place among all sites, and there is a first_ray only
 /// where all_rays says of which net these are a part. \throw Cancelled; InvalidInput for volumes of 2^31 voxels or
-/// more, rays < 1, or numbers that no site has
+/// more, rays < 1, numbers that no site has, or sites whose arrays have several lengths
 [[nodiscard]] TraceCounters gather(const Volume& volume, const Sites& sites, const GatherSettings& settings,
                                    const Run& run, const RaySink& sink);
 

@@ -20,6 +20,7 @@ struct LevelSetHit {
 class LevelSetIntersector {
  public:
   explicit LevelSetIntersector(const Volume& volume);
+  explicit LevelSetIntersector(Volume&& volume) = delete;
   ~LevelSetIntersector();
   LevelSetIntersector(const LevelSetIntersector&) = delete;
   LevelSetIntersector& operator=(const LevelSetIntersector&) = delete;

@@ -84,17 +84,20 @@ class LightLinks {
 
   /// Traces the links. \pre as gather(); the volume must outlive the links. \throw Cancelled, InvalidInput
   LightLinks(const Volume& volume, Sites sites, const LinkSettings& settings, const Run& run);
+  LightLinks(Volume&& volume, Sites sites, const LinkSettings& settings, const Run& run) = delete;
   LightLinks(const LightLinks&) = delete;
   LightLinks& operator=(const LightLinks&) = delete;
   ~LightLinks();
 
   /// Doubles the rays of the sites listed, each once: their sequences go on where they ended. `run` brings threads and
   /// progress; the seed stays. Not at the same time as any other call. \throw InvalidInput where nets are interleaved
-  /// or a part of the rays is kept
+  /// or a part of the rays is kept, or a number is no site's or comes twice; Cancelled. Whatever is thrown, the links
+  /// are as they were.
   void extend(std::span<const std::uint32_t> sites, const Run& run);
 
   /// More sites, behind those that are there, with settings.rays each. Not at the same time as any other call. \throw
-  /// InvalidInput where ends are kKept, as these know the sites at the texels, or nets are interleaved
+  /// InvalidInput where ends are kKept, as these know the sites at the texels, or nets are interleaved; Cancelled.
+  /// Whatever is thrown, the links are as they were.
   void append(const Sites& more, const Run& run);
 
   /// Without positions and normals once these were let go.
@@ -124,7 +127,7 @@ class LightLinks {
                                std::span<const float> start = {}) const;
 
   /// e where reflected light is not found but given, at the texels (`channels` of the scene each). \pre ends are
-  /// kAtTexels. \throw InvalidInput
+  /// kAtTexels. \throw InvalidInput, also where there is not one value a texel and channel
   [[nodiscard]] SampleSet reflecting(const Scene& scene, std::span<const float> texels, const SolveSettings& settings,
                                      const Run& run) const;
 
@@ -135,6 +138,12 @@ class LightLinks {
 
   LightLinks(const Volume& volume, Sites sites, const LinkSettings& settings, const Run& run, WithoutProbes);
   void trace(std::size_t first, std::size_t rays, std::span<const std::uint32_t> numbers, const Run& run);
+  /// What to go back to where something is thrown.
+  struct Mark;
+  [[nodiscard]] Mark mark() const;
+  void go_back(Mark&& before) noexcept;
+  /// A change of the probes' links, whose rays are counted here.
+  void change_again(const Run& run, const std::function<void(const Run& quiet)>& change);
   [[nodiscard]] SampleSet lamp_light(const SceneParts& parts, const SolveSettings& settings, TraceCounters& counters,
                                      const Run& run) const;
   /// The last reflection, of the light given, with what it takes to know its noise.

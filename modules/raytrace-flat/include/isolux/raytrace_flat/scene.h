@@ -91,14 +91,16 @@ struct Scene {
 /// True if every colour of the scene is grey: then one channel is enough.
 [[nodiscard]] bool is_grey(const Scene& scene);
 
-/// Whether light is aimed at: light sources, or parts of an image that are many times brighter than the rest.
+/// Whether light is aimed at: light sources, or parts of an image that are many times brighter than the rest. \throw
+/// InvalidInput for images without pixels
 [[nodiscard]] bool has_lamps(const Scene& scene);
 
 /// \throw InvalidInput, naming what and why, for colours that are negative or not finite, albedos above 1, keys that do
 /// not rise, directions and areas of length zero, and images without pixels.
 void require_valid(const Scene& scene);
 
-/// Radiance that arrives from world direction `towards` (unit) where nothing is in the way, light sources apart.
+/// Radiance that arrives from world direction `towards` (unit) where nothing is in the way, light sources apart. \throw
+/// InvalidInput for images without pixels
 [[nodiscard]] Vec3f environment_radiance(const Environment& environment, const Vec3& towards);
 
 }  // namespace isolux
