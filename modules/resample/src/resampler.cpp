@@ -15,6 +15,7 @@ IlluminationGrid unlit_grid(const Lattice& texels, int channels) {
 }
 
 ResampledGrid told_by_bytes(IlluminationGrid marked) {
+  require_complete(marked);
   ResampledGrid told{.grid = std::move(marked), .lit = {}};
   const auto channels = std::size_t(told.grid.channels);
   told.lit.resize(told.grid.lattice.count(), 1);

@@ -5,15 +5,28 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 namespace isolux {
 namespace {
 
-void require_finite(const SampleSet& samples) {
-  const auto finite = [](float x) { return std::isfinite(x); };
-  if (!std::all_of(samples.radiance.begin(), samples.radiance.end(), finite)) {
-    throw InvalidInput("a sample's radiance is infinite or not a number: it must be finite");
-  }
+bool is_finite(float x) { return std::isfinite(x); }
+bool is_finite(const Vec3f& v) { return (int(is_finite(v.x)) & int(is_finite(v.y)) & int(is_finite(v.z))) != 0; }
+
+/// `values`: `each` a sample.
+template <class Value>
+void require_finite(const char* what, const std::vector<Value>& values, std::size_t each = 1) {
+  int all = 1;  // without a branch, so that vectors do it: a sample has a dozen numbers
+  for (const Value& value : values) all &= int(is_finite(value));
+  if (all != 0) return;
+  const auto bad = std::find_if(values.begin(), values.end(), [](const Value& value) { return !is_finite(value); });
+  throw InvalidInput(fmt::format("sample {}: its {} is infinite or not a number; it must be finite",
+                                 std::size_t(bad - values.begin()) / each, what));
+}
+
+void require_finite_light(const SampleSet& samples) {
+  require_finite("position", samples.sites.positions);
+  require_finite("radiance", samples.radiance, std::size_t(samples.channels));
 }
 
 }  // namespace
@@ -33,7 +46,17 @@ void require_samples(const SampleSet& samples) {
         n, samples.channels, sites.isovalues.size(), sites.normals.size(), samples.radiance.size(),
         samples.variance.size()));
   }
-  require_finite(samples);
+  const bool is_told_apart = !samples.lamps.empty() || !samples.lamps_variance.empty();
+  if (is_told_apart && (samples.lamps.size() != samples.radiance.size() || samples.lamps_variance.size() != n)) {
+    throw InvalidInput(
+        fmt::format("{} samples of {} channels with {} radiances and {} variances of lamps: allowed is "
+                    "none, or one of each a sample (and channel)",
+                    n, samples.channels, samples.lamps.size(), samples.lamps_variance.size()));
+  }
+  require_finite_light(samples);
+  require_finite("isovalue", sites.isovalues);
+  require_finite("normal", sites.normals);
+  require_finite("variance", samples.variance);  // the largest float stands for one that nobody knows
 }
 
 void require_placed(const SampleSet& samples) {
@@ -42,7 +65,14 @@ void require_placed(const SampleSet& samples) {
     throw InvalidInput(fmt::format("{} positions of {} channels with {} radiances: one of each is needed", n,
                                    samples.channels, samples.radiance.size()));
   }
-  require_finite(samples);
+  require_finite_light(samples);
+}
+
+void require_texels(const Lattice& texels) {
+  const Index3& size = texels.size;
+  if (size.x < 1 || size.y < 1 || size.z < 1)
+    throw InvalidInput(fmt::format("a grid of {}x{}x{} texels: allowed is 1 and more", size.x, size.y, size.z));
+  require_spanning(texels.frame, "a grid of texels");
 }
 
 }  // namespace isolux

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <isolux/core/lattice.h>
 #include <isolux/core/sample_set.h>
 
 namespace isolux {
@@ -9,5 +10,7 @@ namespace isolux {
 void require_samples(const SampleSet& samples);
 /// The same of positions and their light alone, perhaps none.
 void require_placed(const SampleSet& samples);
+/// \throw InvalidInput unless there are texels, and their axes span a volume
+void require_texels(const Lattice& texels);
 
 }  // namespace isolux

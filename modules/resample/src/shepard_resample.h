@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "samples.h"
 #include "shepard.h"
 
 namespace isolux {
@@ -17,6 +18,7 @@ template <class Search, class LightTexel>
 ResampledGrid resample_texels(const Volume& volume, const SampleSet& samples, const Lattice& texels,
                               const ShepardSpace& space, const Search& search, const LightTexel& light,
                               const Run& run) {
+  require_texels(texels);
   const TrilinearField field(volume);
   const IndexToWorld to_volume = index_to_index(texels, volume.lattice());
   const auto nx = std::size_t(texels.size.x);

@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+#include <isolux/core/error.h>
 #include <isolux/core/field.h>
 #include <isolux/core/parallel.h>
 #include <isolux/resample/texel_means.h>
@@ -207,6 +209,11 @@ TexelMeans::TexelMeans(TexelMeans&&) noexcept = default;
 TexelMeans& TexelMeans::operator=(TexelMeans&&) noexcept = default;
 
 ResampledGrid TexelMeans::of(std::span<const float> radiance, int channels, const Run& run) const {
+  if (channels != 1 && channels != 3)
+    throw InvalidInput(fmt::format("samples of {} channels: allowed are 1 and 3", channels));
+  if (radiance.size() != impl_->rows.size() * std::size_t(channels))
+    throw InvalidInput(fmt::format("{} radiances for {} sites of {} channels: one of each is needed", radiance.size(),
+                                   impl_->rows.size(), channels));
   ResampledGrid result{.grid = IlluminationGrid(impl_->texels, channels),
                        .lit = std::vector<std::uint8_t>(impl_->texels.count(), 0)};
   result.grid.detail.slopes.assign(result.grid.values.size(), 0.0f);

@@ -1,4 +1,5 @@
 #include <gtest/gtest.h>
+#include <isolux/core/error.h>
 #include <isolux/resample.h>
 
 #include <algorithm>
@@ -94,6 +95,22 @@ TEST(FillUnlit, LeavesTexelsBeyondItsLayersDark) {
   }
   const IlluminationGrid light = fill_unlit(partial, {}, {.layers = 2});
   for (std::size_t t = 0; t < light.values.size(); ++t) EXPECT_EQ(light.values[t], t % 9 <= 2 ? 0.5f : 0.0f);
+}
+
+TEST(LightBricks, AreNotMadeOfALightThatIsNotComplete) {
+  const Volume volume = ball_volume();
+  const ValueRange range{.low = -6.0f, .high = -5.5f};
+  IlluminationGrid light = uneven_light(volume, 1, {23, 21, 19});
+  EXPECT_NO_THROW((void)make_light_bricks(volume, light, range));
+  light.detail.slopes.pop_back();
+  EXPECT_THROW((void)make_light_bricks(volume, light, range), InvalidInput);
+  light.detail.slopes.clear();
+  light.detail.normal_slopes[2].resize(3);
+  EXPECT_THROW((void)make_light_bricks(volume, light, range), InvalidInput);
+  light.detail.normal_slopes = {};
+  light.values.resize(3);
+  EXPECT_THROW((void)make_light_bricks(volume, light, range), InvalidInput);
+  EXPECT_THROW((void)make_light_bricks(volume, {}, range), InvalidInput);
 }
 
 }  // namespace

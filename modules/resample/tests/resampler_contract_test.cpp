@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <limits>
 #include <memory>
 #include <stop_token>
 #include <thread>
@@ -131,6 +132,40 @@ TEST_P(ResamplerContract, RefusesSamplesThatDoNotSuit) {
   refuses([](SampleSet& bad) { bad.channels = 2; });
   refuses([](SampleSet& bad) { bad.radiance[4] = std::nanf(""); });
   refuses([](SampleSet& bad) { bad.radiance[5] = INFINITY; });
+  refuses([](SampleSet& bad) { bad.lamps = {1.0f, 2.0f}; });
+  refuses([](SampleSet& bad) { bad.lamps_variance = {1.0f}; });
+  for (const float bad_number : {std::nanf(""), INFINITY, -INFINITY}) {
+    refuses([=](SampleSet& bad) { bad.sites.positions[2].y = bad_number; });
+    refuses([=](SampleSet& bad) { bad.sites.isovalues[2] = bad_number; });
+    refuses([=](SampleSet& bad) { bad.sites.normals[2].z = bad_number; });
+    refuses([=](SampleSet& bad) { bad.variance[2] = bad_number; });
+  }
+  SampleSet unknown = good;
+  unknown.variance.assign(unknown.size(), std::numeric_limits<float>::max());
+  EXPECT_NO_THROW((void)resampler()->resample(volume_, unknown, texels_, {}));
+}
+
+TEST_P(ResamplerContract, RefusesGridsWithoutTexels) {
+  const SampleSet good = at_texel_centres(volume_, texels_, 1, smooth_light);
+  for (const Index3 size : {Index3(0, 3, 3), Index3(-1, 3, 3), Index3(-1, -1, 3)}) {
+    Lattice none = texels_;
+    none.size = size;
+    EXPECT_THROW((void)resampler()->resample(volume_, good, none, {}), InvalidInput);
+  }
+  Lattice flat = texels_;
+  flat.frame.axes[1] = flat.frame.axes[0];
+  EXPECT_THROW((void)resampler()->resample(volume_, good, flat, {}), InvalidInput);
+}
+
+TEST_P(ResamplerContract, RefusesPartsForAnotherLight) {
+  const std::unique_ptr<Resampler> made = resampler();
+  if (!made->takes_parts()) return;
+  const SampleSet good = at_texel_centres(volume_, texels_, 3, smooth_light);
+  IlluminationGrid grey = unlit_grid(texels_, 1);
+  EXPECT_THROW(made->add_part(volume_, good, grey, {}), InvalidInput);
+  IlluminationGrid few = unlit_grid(texels_, 3);
+  few.values.resize(3);
+  EXPECT_THROW(made->add_part(volume_, good, few, {}), InvalidInput);
 }
 
 TEST_P(ResamplerContract, LooksAtLampsOnlyIfItSaysSo) {

@@ -1,5 +1,6 @@
 // Means of scattered samples around the texels.
 #include <gtest/gtest.h>
+#include <isolux/core/error.h>
 #include <isolux/resample.h>
 
 #include <algorithm>
@@ -77,6 +78,16 @@ TEST(TexelMeans, AreTheSameForAnyNumberOfThreads) {
     return TexelMeans(volume, samples.sites, texels, run).of(samples.radiance, 1, run).grid.values;
   };
   EXPECT_EQ(means(1), means(4));
+}
+
+TEST(TexelMeans, RefuseLightThatIsNotOneASite) {
+  const Volume volume = ramp_volume({5, 5, 5}, Vec3(1.0));
+  const SampleSet samples = random_samples(volume, 90, 1, [](const Vec3&, int) { return 1.0f; });
+  const TexelMeans means(volume, samples.sites, cell_lattice(volume.lattice()), {});
+  EXPECT_NO_THROW((void)means.of(samples.radiance, 1, {}));
+  EXPECT_THROW((void)means.of(samples.radiance, 3, {}), InvalidInput);
+  const std::vector<float> two(180, 1.0f);
+  EXPECT_THROW((void)means.of(two, 2, {}), InvalidInput);
 }
 
 }  // namespace

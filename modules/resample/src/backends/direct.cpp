@@ -62,6 +62,7 @@ class Direct final : public Resampler {
   ResampledGrid resample(const Volume& volume, const SampleSet& samples, const Lattice& texels,
                          const Run& run) const override {
     require_samples(samples);
+    require_texels(texels);
     if (!options_.denoise) return told_by_bytes(placed(volume, samples, samples.radiance, texels, run));
     const DenoisedLight light = denoised_light(volume, samples, texels, run);
     IlluminationGrid result = placed(volume, samples, light.rest, texels, run);
@@ -78,6 +79,11 @@ class Direct final : public Resampler {
   void add_part(const Volume& volume, const SampleSet& samples, IlluminationGrid& texels,
                 const Run& run) const override {
     require_placed(samples);
+    require_complete(texels);
+    if (samples.channels != texels.channels) {
+      throw InvalidInput(fmt::format("samples of {} channels for a light of {}: they must be as many", samples.channels,
+                                     texels.channels));
+    }
     place(volume, samples.sites, samples.radiance, texels, run);
   }
 

@@ -55,6 +55,7 @@ class Fit final : public Resampler {
   ResampledGrid resample(const Volume& volume, const SampleSet& samples, const Lattice& texels,
                          const Run& run) const override {
     require_samples(samples);
+    require_texels(texels);
     const FitTerms terms{.slopes = options_.slopes, .normals = options_.normals};
     const FitSystem system(volume, samples, texels, terms,
                            options_.near_field ? NearFieldUse::kFitted : NearFieldUse::kNone, run);

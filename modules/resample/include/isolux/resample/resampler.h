@@ -19,7 +19,8 @@ struct ResampledGrid {
 
 /// A grid none of whose texels has light as yet: NaN marks them, and takes no memory beside the values.
 [[nodiscard]] IlluminationGrid unlit_grid(const Lattice& texels, int channels);
-/// The same said by a byte a texel: what is NaN in such a grid is 0 and not lit.
+/// The same said by a byte a texel: what is NaN in such a grid is 0 and not lit. \throw InvalidInput if the grid is not
+/// complete
 [[nodiscard]] ResampledGrid told_by_bytes(IlluminationGrid marked);
 
 /// The resample stage. Backends are immutable and callable from many threads.
@@ -30,7 +31,7 @@ class Resampler {
 
   /// The light at the texels of `texels`, a lattice over the box of `volume`. Distances are lengths in world units
   /// along the box's axes. Equal bits for any number of threads. \throw InvalidInput if there are no samples or they do
-  /// not suit; Cancelled
+  /// not suit (numbers that are not finite, arrays of several lengths), or no texels; Cancelled
   [[nodiscard]] virtual ResampledGrid resample(const Volume& volume, const SampleSet& samples, const Lattice& texels,
                                                const Run& run) const = 0;
 

@@ -21,8 +21,8 @@ class TexelMeans {
   TexelMeans(TexelMeans&&) noexcept;
   TexelMeans& operator=(TexelMeans&&) noexcept;
 
-  /// `channels` values a site, channel fastest. Texels with no site between their neighbours are not lit. \pre as many
-  /// sites as at construction
+  /// `channels` values a site, channel fastest. Texels with no site between their neighbours are not lit. \throw
+  /// InvalidInput unless they are as many as the sites at construction, of 1 or 3 channels
   [[nodiscard]] ResampledGrid of(std::span<const float> radiance, int channels, const Run& run) const;
 
  private:
