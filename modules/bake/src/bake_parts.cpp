@@ -29,6 +29,38 @@ void require_memory(const Index3& texels) {
                                  texels.y, texels.z, bytes * 1e-9, there * 1e-9));
 }
 
+/// What a resampler of anybody's was asked for. \throw InvalidInput naming it and what is not so
+void require_resampled(const ResampledGrid& partial, const Lattice& texels, int channels, const std::string& name) {
+  const auto refuse = [&](const std::string& what) { throw InvalidInput(fmt::format("resampler {}: {}", name, what)); };
+  const IlluminationGrid& grid = partial.grid;
+  const Index3& size = grid.lattice.size;
+  if (size != texels.size) {
+    refuse(fmt::format("it gave {}x{}x{} texels and was asked for {}x{}x{}", size.x, size.y, size.z, texels.size.x,
+                       texels.size.y, texels.size.z));
+  }
+  if (grid.lattice.frame.origin != texels.frame.origin || grid.lattice.frame.axes != texels.frame.axes)
+    refuse("its texels lie elsewhere than those it was asked for");
+  if (grid.channels != channels)
+    refuse(fmt::format("it made {} channels of samples that have {}", grid.channels, channels));
+  const std::size_t values = texels.count() * std::size_t(channels);
+  if (grid.values.size() != values || partial.lit.size() != texels.count()) {
+    refuse(fmt::format("it gave {} values and {} flags for {} texels of {} channels", grid.values.size(),
+                       partial.lit.size(), texels.count(), channels));
+  }
+  const LightDetail& detail = grid.detail;
+  const bool turned = !detail.normal_slopes[0].empty();
+  if (!detail.slopes.empty() && detail.slopes.size() != values)
+    refuse(fmt::format("it gave {} slopes for {} values", detail.slopes.size(), values));
+  for (const std::vector<float>& slopes : detail.normal_slopes)
+    if (slopes.size() != (turned ? values : 0))
+      refuse(fmt::format("it gave {} slopes along an axis of the normal for {} values", slopes.size(), values));
+  for (std::size_t t = 0, v = 0; t < texels.count(); ++t) {
+    for (int c = 0; c < channels; ++c, ++v)
+      if (partial.lit[t] != 0 && !std::isfinite(grid.values[v]))
+        refuse(fmt::format("texel {} is lit and holds {}: light is finite", t, grid.values[v]));
+  }
+}
+
 }  // namespace
 
 void require_settings(const BakeSettings& settings) {
@@ -92,6 +124,16 @@ SiteRequest site_request(const Volume& volume, const BakeSettings& settings, con
   return request;
 }
 
+void require_traced(const SampleSet& samples, std::size_t sites, const std::string& name) {
+  const std::size_t count = samples.variance.size();
+  const bool is_one_each = samples.channels > 0 && samples.radiance.size() == count * std::size_t(samples.channels) &&
+                           samples.size() == count && (sites == 0 || count == sites);
+  if (is_one_each) return;
+  throw InvalidInput(
+      fmt::format("tracer {}: {} sites, of which it gave {} with {} radiances of {} channels and {} variances", name,
+                  sites, samples.size(), samples.radiance.size(), samples.channels, count));
+}
+
 int kept_rays_a_site(const BakeSettings& settings, std::size_t sites, int rays) {
   constexpr int kFewest = 4;
   if (settings.trace.bounces == 0) return rays;  // a bit each, no links
@@ -129,12 +171,9 @@ void keep_first(std::size_t count, SampleSet& samples) {
 
 void finish_light(const Volume& volume, const SampleSet& samples, ResampledGrid partial, const Resampler& resampler,
                   const BakeSettings& settings, const Run& run, BakeResult& result) {
-  require_complete(partial.grid);
-  if (partial.lit.size() != partial.grid.lattice.count()) {
-    throw InvalidInput(fmt::format("resampler {}: it gave {} flags for {} texels", settings.resampler.name,
-                                   partial.lit.size(), partial.grid.lattice.count()));
-  }
+  const int channels = partial.grid.channels;  // samples may be those of its error
   resampler.add_detail(volume, samples, partial, run);
+  require_resampled(partial, texel_lattice(volume.lattice(), settings), channels, settings.resampler.name);
   result.unlit_texels = std::size_t(std::count(partial.lit.begin(), partial.lit.end(), std::uint8_t(0)));
   result.light = fill_unlit(std::move(partial), run, fill_for(settings));
   result.light.detail.isovalues = settings.isovalues;
@@ -142,18 +181,23 @@ void finish_light(const Volume& volume, const SampleSet& samples, ResampledGrid 
 
 void finish_bake(const Volume& volume, SampleSet samples, const Resampler& resampler, const Lattice& texels,
                  const BakeSettings& settings, const Run& run, BakeResult& result) {
+  require_traced(samples, result.sites, settings.tracer.name);
   result.noise = standard_error(samples.variance);
   result.rmse_estimate = std::hypot(result.noise, result.reading_error);
   const Stopwatch watch;
-  finish_light(volume, samples, resampler.resample(volume, samples, texels, run), resampler, settings, run, result);
+  ResampledGrid partial = resampler.resample(volume, samples, texels, run);
+  require_resampled(partial, texels, samples.channels, settings.resampler.name);
+  finish_light(volume, samples, std::move(partial), resampler, settings, run, result);
   if (settings.wants_error_grid) {
     // Reading is wrong where rays hit, which is also where their number varies.
     const double scale = result.noise > 0.0 ? result.rmse_estimate / result.noise : 1.0;
     const SampleSet errors = standard_errors(std::move(samples), scale);
     // Of other texels it is the mean error around: what is fitted may well be below 0.
-    result.error = are_sites_own(resampler, settings)
-                       ? fill_unlit(resampler.resample(volume, errors, texels, run), run)
-                       : fill_unlit(resamplers().create("cell_grid")->resample(volume, errors, texels, run), run);
+    ResampledGrid grid = are_sites_own(resampler, settings)
+                             ? resampler.resample(volume, errors, texels, run)
+                             : resamplers().create("cell_grid")->resample(volume, errors, texels, run);
+    require_resampled(grid, texels, 1, settings.resampler.name);
+    result.error = fill_unlit(std::move(grid), run);
   }
   result.seconds["resample"] = watch.seconds();
 }

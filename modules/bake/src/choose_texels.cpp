@@ -11,6 +11,7 @@
 #include <glm/geometric.hpp>
 #include <limits>
 
+#include "bake_parts.h"
 #include "resampling_choice.h"
 
 namespace isolux {
@@ -47,7 +48,9 @@ Reference trace_reference(const Volume& volume, const Scene& scene, const BakeSe
   }
   TraceSettings rays = settings.trace;
   rays.rays = kPointRays;
+  const std::size_t count = sites.size();
   TraceResult traced = tracer.trace(volume, scene, std::move(sites), rays, run);
+  require_traced(traced.samples, count, settings.tracer.name);
   counters.rays += traced.counters.rays;
   reference.samples = std::move(traced.samples);
   return reference;
@@ -238,7 +241,9 @@ TexelChoice choose_texels(const Volume& volume, const Scene& scene, const BakeSe
     Corners corners = corners_of(volume, scene, texels, reference.samples.sites, settings.trace.gradient);
     ++other.seed;  // rays of a texel and of a point must not be the same ones
     const std::vector<Vec3f> before_corners = openness_of(corners.sites);
+    const std::size_t count = corners.sites.size();
     const TraceResult traced = tracer->trace(volume, scene, std::move(corners.sites), rays, other);
+    require_traced(traced.samples, count, settings.tracer.name);
     best.counters.rays += traced.counters.rays;
     const Readings read = read_between(corners, traced.samples, before_corners, reference.samples.size());
     const double error = Judge(reference, read, openness).error(texels.count());

@@ -18,6 +18,7 @@ FoundSites find_sites(const Volume& volume, OuterSide outer, const BakeSettings&
   FoundSites found;
   BakeResult& result = found.begun;
   found.sites = sampler->sample(volume, request, run);
+  require_usable(found.sites, volume.lattice(), "sampler " + settings.sampler.name);
   result.sites = found.sites.size();
   count_sites(volume, request, settings, result);
   result.seconds["sites"] = watch.seconds();

@@ -1,11 +1,13 @@
 // The sampler `texels`: ranges of isovalues together give what no range gives, on whatever lattice.
 #include <gtest/gtest.h>
+#include <isolux/core/error.h>
 #include <isolux/sample_sites.h>
 
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <memory>
 #include <vector>
 
 #include "test_volumes.h"
@@ -63,6 +65,13 @@ TEST(TexelSampler, GivesByRangesTheSitesThatItGivesOfAll) {
     }
     EXPECT_EQ(count, all.size()) << of.name;
   }
+}
+
+TEST(TexelSampler, RefusesAMaskOfAnotherGrid) {
+  const Volume volume = index_volume({9, 9, 9}, waves);
+  SiteRequest request{.texels = cell_lattice(volume.lattice())};
+  request.only = std::make_shared<const TexelMask>(Index3(8, 8, 7));
+  EXPECT_THROW((void)samplers().create("texels")->sample(volume, request, {}), InvalidInput);
 }
 
 }  // namespace

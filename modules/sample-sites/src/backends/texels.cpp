@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+#include <isolux/core/error.h>
 #include <isolux/core/parallel.h>
 #include <isolux/sample_sites/site_sampler.h>
 
@@ -26,6 +28,12 @@ class TexelSampler final : public SiteSampler {
   explicit TexelSampler(const Options& /*options*/) {}
 
   [[nodiscard]] Sites sample(const Volume& volume, const SiteRequest& request, const Run& run) const override {
+    if (request.only != nullptr && request.only->size() != request.texels.size) {
+      const Index3& mask = request.only->size();
+      const Index3& size = request.texels.size;
+      throw InvalidInput(fmt::format("a mask of {}x{}x{} texels for a grid of {}x{}x{}: they must be the same", mask.x,
+                                     mask.y, mask.z, size.x, size.y, size.z));
+    }
     const TexelRows rows(volume, request);
     const SiteMaker maker(volume, request);
     const std::size_t slab = std::max(kRowsABlock, rows.count() / kSlabs);

@@ -11,7 +11,7 @@ struct FoundSites {
 };
 
 /// The sites that bake() lights. \pre with_defaults(settings) \throw InvalidInput if the volume is not usable, is
-/// constant, or no site is found; Cancelled
+/// constant, or no site is found, or the sampler gave one that no tracer takes; Cancelled
 [[nodiscard]] FoundSites find_sites(const Volume& volume, OuterSide outer, const BakeSettings& settings,
                                     const Stages& stages, const Run& run);
 

@@ -14,9 +14,12 @@ namespace isolux {
 
 struct SiteRequest {
   Lattice texels{};                         ///< the grid that the samples are for
-  std::size_t count = 0;                    ///< sites wanted; 0: per_texel. Samplers that sit at texels ignore both
+  std::size_t count = 0;                    ///< sites wanted; 0: per_texel. `stratified` gives about so many; samplers
+                                            ///< that sit at texels ignore both
   double per_texel = 1.0;                   ///< sites a texel of what can be lit
-  std::optional<ValueRange> isovalues{};    ///< sites only on level sets within
+  std::optional<ValueRange> isovalues{};    ///< sites only on level sets within; `level_sets` widens a range
+                                            ///< below 1e-3 of the volume's by so much at either end, as
+                                            ///< float positions seldom lie on one level set
   std::shared_ptr<const TexelMask> only{};  ///< of `texels`; of samplers that sit at them, sites at these alone
   std::optional<ValueRange> values{};       ///< of the whole volume, where known: saves a pass
   OuterSide outer = OuterSide::kLower;
@@ -30,7 +33,8 @@ class SiteSampler {
   virtual ~SiteSampler() = default;
 
   /// Sites in the box of `volume`, without those that have no normal or lie outside the isovalue range; equal for any
-  /// number of threads. \pre require_usable(volume). \throw Cancelled
+  /// number of threads. bake() refuses sites outside the box and those whose isovalue or normal is no number. \pre
+  /// require_usable(volume). \throw Cancelled; InvalidInput for a mask of another size than the texels
   [[nodiscard]] virtual Sites sample(const Volume& volume, const SiteRequest& request, const Run& run) const = 0;
 };
 
