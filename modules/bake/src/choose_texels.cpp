@@ -216,7 +216,13 @@ TexelChoice choose_for_both(const Volume& volume, const Scene& scene, const Bake
 }  // namespace
 
 Index3 texels_by_ratio(const Lattice& volume, double ratio) {
-  return glm::max(Index3(glm::round(Vec3(volume.size - 1) * ratio)), Index3(1));
+  constexpr double kMost = std::numeric_limits<int>::max();
+  const Vec3 wanted = glm::round(Vec3(volume.size - 1) * ratio);
+  if (!(ratio > 0.0) || std::max({wanted.x, wanted.y, wanted.z}) > kMost) {
+    throw InvalidInput(fmt::format("{} texels a cell of {}x{}x{} grid points: allowed is above 0 and up to {} an axis",
+                                   ratio, volume.size.x, volume.size.y, volume.size.z, kMost));
+  }
+  return glm::max(Index3(wanted), Index3(1));
 }
 
 TexelChoice choose_texels(const Volume& volume, const Scene& scene, const BakeSettings& settings, double target,

@@ -149,5 +149,16 @@ TEST(ChooseTexels, RefusesTexelsAtTheVoxels) {
   EXPECT_THROW(choice(read_volume("gen:sphere:8"), 0.1, settings), InvalidInput);
 }
 
+TEST(TexelsByRatio, AreRefusedWhereNoNumberHoldsThem) {
+  const Lattice volume{.size = Index3(9), .frame = {}};
+  EXPECT_EQ(texels_by_ratio(volume, 0.75), Index3(6));
+  EXPECT_EQ(texels_by_ratio(volume, 1e-9), Index3(1));
+  for (const double ratio : {3e8, 1e12, HUGE_VAL, 0.0, -1.0, std::nan("")})
+    EXPECT_THROW((void)texels_by_ratio(volume, ratio), InvalidInput) << ratio;
+  BakeSettings settings = without_bounces();
+  settings.texels_a_cell = 3e8;
+  EXPECT_THROW((void)bake(read_volume("gen:gyroid:9"), {}, settings, stages(), {}), InvalidInput);
+}
+
 }  // namespace
 }  // namespace isolux::test

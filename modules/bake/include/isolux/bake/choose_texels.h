@@ -21,7 +21,8 @@ struct TexelChoice {
 [[nodiscard]] TexelChoice choose_texels(const Volume& volume, const Scene& scene, const BakeSettings& settings,
                                         double target, const Stages& stages, const Run& run);
 
-/// So many texels a cell and axis: at least one on each. \pre ratio > 0
+/// So many texels a cell and axis: at least one on each. \throw InvalidInput unless ratio > 0 and no axis has
+/// more than an int holds
 [[nodiscard]] Index3 texels_by_ratio(const Lattice& volume, double ratio);
 
 }  // namespace isolux
