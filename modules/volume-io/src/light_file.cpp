@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <locale>
 #include <sstream>
 #include <utility>
@@ -41,7 +42,12 @@ std::vector<NearFieldTerm> parse_near_field(const std::string& path, const std::
   return terms;
 }
 
-/// "LOW:HIGH"
+/// "LOW:HIGH", finite where the range is open.
+std::string isovalues_text(const ValueRange& range) {
+  constexpr float kMost = std::numeric_limits<float>::max();
+  return fmt::format("{}:{}", std::max(range.low, -kMost), std::min(range.high, kMost));
+}
+
 ValueRange parse_isovalues(const std::string& path, const std::string& text) {
   const std::size_t colon = text.find(':');
   if (colon == std::string::npos) {
@@ -129,6 +135,8 @@ void write_detail(const LightDetail& extra, LevelSetSide side, KeyValues& pairs)
     pairs[detail_key(side, near_field_name(extra.texel_light))] = near_field_text(extra.near_field);
   if (!extra.empty() && std::isfinite(extra.ceiling))
     pairs[detail_key(side, "light_ceiling")] = fmt::format("{}", extra.ceiling);
+  // What else says it in a file (make_light_file) also says it of light whose range is that of the whole volume.
+  if (extra.isovalues) pairs["isolux.iso_range"] = isovalues_text(*extra.isovalues);
 }
 
 void read_detail(const std::string& path, const KeyValues& pairs, LevelSetSide side, LightDetail& extra) {

@@ -97,6 +97,11 @@ std::vector<std::string> files_written(const std::string& path, const WriteOptio
 }
 
 void write_volume(const VolumeView& volume, const std::string& path, const WriteOptions& options) {
+  const Index3& size = volume.lattice().size;
+  if (size.x < 1 || size.y < 1 || size.z < 1)
+    throw InvalidInput(fmt::format("{}: a volume of {}x{}x{} grid points; every axis needs at least 1 to be written",
+                                   path, size.x, size.y, size.z));
+  require_spanning(volume.lattice().frame, volume.name());
   static_cast<void>(files_written(path, options));
   if (detail::has_extension(path, ".nrrd")) return write_attached(volume, path, options);
   if (detail::has_extension(path, ".nhdr")) return write_detached(volume, path, options);

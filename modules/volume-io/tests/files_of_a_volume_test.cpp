@@ -79,5 +79,20 @@ TEST(Nrrd, TakesNothingButZerosBehindItsGzipData) {
     EXPECT_NE(test::reading_error(folder.write("more.nrrd", bytes + behind)), "") << behind.size();
 }
 
+TEST(VolumeFiles, AreNotWrittenIfTheyCouldNotBeReadBack) {
+  const test::TemporaryFolder folder;
+  const Volume none;
+  Volume nowhere = small();
+  const auto values = nowhere.values.values();
+  Lattice lattice = nowhere.lattice();
+  lattice.frame.origin.x = std::nan("");
+  nowhere.values = Grid<float>(lattice, std::vector<float>(values.begin(), values.end()));
+  for (const char* name : {"a.nrrd", "a.nhdr"}) {
+    EXPECT_THROW(write_volume(none, folder.file(name)), InvalidInput);
+    EXPECT_THROW(write_volume(nowhere, folder.file(name)), InvalidInput);
+    EXPECT_FALSE(std::filesystem::exists(folder.file(name)));
+  }
+}
+
 }  // namespace
 }  // namespace isolux

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 
 #include <cstring>
+#include <limits>
 
 namespace isolux {
 namespace {
@@ -228,6 +229,21 @@ TEST(LightFile, IsAVolumeTooWhenGrey) {
   const test::TemporaryFolder folder;
   write_light(example(1), folder.file("l.nrrd"), "RAS");
   EXPECT_EQ(test::values_of(read_volume(folder.file("l.nrrd"))), example(1).grid.values);
+}
+
+TEST(LightFile, KeepsTheRangeThatWasLit) {
+  const test::TemporaryFolder folder;
+  LightFile light = example(1);
+  light.grid.detail.isovalues = ValueRange{.low = 0.1f, .high = 0.7f};
+  write_light(light, folder.file("l.nrrd"), "left-posterior-superior");
+  const LightFile back = read_light(folder.file("l.nrrd"));
+  ASSERT_TRUE(back.grid.detail.isovalues);
+  EXPECT_EQ(back.grid.detail.isovalues->low, 0.1f);
+  EXPECT_EQ(back.grid.detail.isovalues->high, 0.7f);
+  // An open end is as good as the largest number.
+  light.grid.detail.isovalues->low = -std::numeric_limits<float>::infinity();
+  write_light(light, folder.file("l.nrrd"), "left-posterior-superior");
+  EXPECT_TRUE(read_light(folder.file("l.nrrd")).grid.detail.covers(-1e38));
 }
 
 }  // namespace

@@ -28,12 +28,12 @@ struct LightWriteOptions {
 /// (`kinds: vector domain domain domain`); a light with slopes has them behind the values on that axis (2 or 6),
 /// and those along the normal's x, y and z behind these (5 or 15; 4 or 12 without slopes over the isovalue;
 /// `isolux.texel_numbers` says so); what else
-/// its detail holds in `isolux.near_field` (`isolux.own_near_field`: TexelLight) and `isolux.light_ceiling`; a light of
-/// both sides has the inner side's numbers behind all of the outer's (2, 6; 4, 12 with slopes, and so on),
-/// `isolux.sides` = `both`, and `isolux.inner.*` for its detail; `sizes:` before `space:`, metadata as key/value pairs
-/// (newlines escaped as the NRRD definition says). Written beside the target and renamed. `space` is what the file
-/// says of its axes (Volume::space). \throw IoError; InvalidInput if the grid is not complete or the sides are laid out
-/// differently
+/// its detail holds in `isolux.near_field` (`isolux.own_near_field`: TexelLight), `isolux.light_ceiling` and
+/// `isolux.iso_range`; a light of both sides has the inner side's numbers behind all of the outer's (2, 6; 4, 12 with
+/// slopes, and so on), `isolux.sides` = `both`, and `isolux.inner.*` for its detail; `sizes:` before `space:`, metadata
+/// as key/value pairs (newlines escaped as the NRRD definition says). Written beside the target and renamed. `space` is
+/// what the file says of its axes (Volume::space). \throw IoError; InvalidInput if the grid is not complete or the
+/// sides are laid out differently
 void write_light(const LightFile& light, const std::string& path, const std::string& space,
                  const LightWriteOptions& options = {});
 

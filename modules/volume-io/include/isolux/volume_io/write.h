@@ -16,8 +16,10 @@ struct WriteOptions {
 /// there already and is not that of the header at `path`
 [[nodiscard]] std::vector<std::string> files_written(const std::string& path, const WriteOptions& options = {});
 
-/// Writes a volume in the format of its extension (.nrrd, .nhdr, .raw as name_WxHxD_type.raw, and what the itk backend
-/// adds), in its stored type. Written beside the target and renamed. \throw as files_written(), IoError.
+/// Writes a volume in the format of its extension (.nrrd, .nhdr, .raw as name_WxHxD_type.raw), in its stored type.
+/// Written beside the target and renamed. NRRD knows some spaces by name; any other is written as three dimensions
+/// without a name, which is read back as 3D-right-handed. \throw as files_written(); IoError; InvalidInput for volumes
+/// that could not be read back: without grid points, or with axes that span no volume
 void write_volume(const VolumeView& volume, const std::string& path, const WriteOptions& options = {});
 
 }  // namespace isolux
