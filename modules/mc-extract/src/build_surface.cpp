@@ -48,6 +48,7 @@ std::vector<std::uint32_t> number_vertices(const SurfaceBlock& block, std::uint3
 
 IndexedMesh build_surface(const VolumeView& volume, const ExtractSettings& settings, const Run& run,
                           const AddCell& add_cell) {
+  require_plane(volume.lattice().size);
   const int slabs = volume.lattice().size.z - 1;
   std::vector<SurfaceBlock> blocks(block_count(std::size_t(slabs), kSlabs));
   parallel_blocks(std::size_t(slabs), kSlabs, run, "extract", [&](const Block& block) {

@@ -1,5 +1,8 @@
 #include "surface_builder.h"
 
+#include <fmt/format.h>
+#include <isolux/core/error.h>
+
 #include <algorithm>
 #include <glm/geometric.hpp>
 #include <limits>
@@ -12,6 +15,12 @@ namespace isolux::mc {
 
 namespace {
 constexpr std::uint32_t kNoVertex = std::numeric_limits<std::uint32_t>::max();
+}
+
+void require_plane(const Index3& size) {
+  if (std::size_t(size.x) * std::size_t(size.y) <= std::size_t(1) << 29) return;
+  throw InvalidInput(
+      fmt::format("a volume of {}x{}x{} grid points: marching takes at most 2^29 a plane", size.x, size.y, size.z));
 }
 
 SurfaceBuilder::SurfaceBuilder(const VolumeView& volume, const ExtractSettings& settings, SlabRange slabs)

@@ -75,6 +75,10 @@ class SurfaceBuilder {
   SurfaceBlock block_;
 };
 
+/// \throw InvalidInput for volumes a plane of which has more grid points than a builder keeps numbers for: 64 bytes
+/// each
+void require_plane(const Index3& size);
+
 /// Adds what one mixed cell holds, given its inside corners.
 using AddCell = std::function<void(SurfaceBuilder& surface, const Index3& cell, int inside)>;
 

@@ -9,6 +9,7 @@
 #include "fields.h"
 #include "mesh_laws.h"
 #include "stress.h"
+#include "surface_builder.h"
 
 namespace isolux {
 namespace {
@@ -261,6 +262,11 @@ TEST_P(EveryExtractor, KeepsVerticesOnTheTrilinearSurface) {
     // interpolated, so wrong by the second order, at most 6 (4 pi/32)^2/8.
     EXPECT_NEAR(field.value(index), 0.2, off_the_grid < 2 ? 1e-3 : 0.12);
   }
+}
+
+TEST(SurfaceBuilder, RefusesPlanesOfMorePointsThanItHasNumbersFor) {
+  EXPECT_NO_THROW(mc::require_plane({1 << 15, 1 << 14, 2}));
+  EXPECT_THROW(mc::require_plane({40000, 30000, 2}), InvalidInput);
 }
 
 }  // namespace

@@ -45,7 +45,8 @@ class Extractor {
   /// The level set {f = isovalue}, open where it meets the box's faces (see `cap`); empty where there is none. Always
   /// an oriented 2-manifold: an edge inside the box has two faces, a vertex one fan. No triangle has zero area, as far
   /// as float coordinates can tell: a vertex that would lie on a grid point is kept 2^-10 of an edge away from it. \pre
-  /// require_usable(volume). \throw Cancelled; InvalidInput if the mesh would not fit 2^31 half-edges.
+  /// require_usable(volume). \throw Cancelled; InvalidInput if the mesh would not fit 2^31 half-edges, or the
+  /// volume has more than 2^29 grid points a plane; marching_cubes also takes at most 65536 along x and y.
   [[nodiscard]] virtual IsoMesh extract(const VolumeView& volume, const ExtractSettings& settings,
                                         const Run& run) const = 0;
 };

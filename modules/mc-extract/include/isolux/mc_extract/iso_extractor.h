@@ -23,8 +23,8 @@ class IsoExtractor {
   };
 
   /// Looks at `volume`, which must stay where it is. In bytes a volume costs a sixth to a third less time an isovalue
-  /// than in floats. \pre require_usable(volume). \throw InvalidInput if two planes of the volume have
-  /// more than 2^30 grid points or an axis more than 65536.
+  /// than in floats. \pre require_usable(volume). \throw InvalidInput if a plane of the volume
+  /// has more than 2^29 grid points, or more than 65536 along x or y; along z there may be any number.
   explicit IsoExtractor(const VolumeView& volume, const Run& run = {}, Index index = Index::kBricks);
   explicit IsoExtractor(Volume&& volume, const Run& run = {}, Index index = Index::kBricks) = delete;
   explicit IsoExtractor(StoredVolume&& volume, const Run& run = {}, Index index = Index::kBricks) = delete;
