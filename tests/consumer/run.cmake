@@ -34,6 +34,14 @@ if(loaded)
   endif()
 endif()
 
+# What is found by a program that is missing itself says so.
+execute_process(COMMAND ${CMAKE_COMMAND} -S ${SOURCE} -B ${BUILD}/consumer/without -G ${GENERATOR} -D CMAKE_CXX_COMPILER=${CXX}
+                -D CMAKE_PREFIX_PATH=${prefix} -D CMAKE_DISABLE_FIND_PACKAGE_PkgConfig=ON
+                RESULT_VARIABLE status OUTPUT_QUIET ERROR_VARIABLE says)
+if(status EQUAL 0 OR NOT says MATCHES "pkg-config")
+  message(FATAL_ERROR "without pkg-config: exit status ${status}, ${says}")
+endif()
+
 file(GLOB_RECURSE module ${prefix}/*isolux-raytrace_flat-targets.cmake)
 file(REMOVE ${module})
 execute_process(COMMAND ${CMAKE_COMMAND} -S ${SOURCE}/parts -B ${BUILD}/consumer/parts -G ${GENERATOR} -D CMAKE_CXX_COMPILER=${CXX}

@@ -57,6 +57,7 @@ function(isolux_flags target)
     -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor -Woverloaded-virtual -Wcast-qual -Wundef -Wimplicit-fallthrough
     $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict>  # GCC 12: false positive on "x" + std::string
     -ffp-contract=off                        # the same bits with and without FMA instructions
+    -fno-fast-math                           # NaN and infinity mean something, whatever flags the project around has
     $<$<AND:$<CXX_COMPILER_ID:GNU>,$<BOOL:${ISOLUX_UNITY}>>:-Wno-subobject-linkage>  # a source's own names, though it is included
     $<$<BOOL:${ISOLUX_WERROR}>:-Werror>)
   # Instruction sets that no kernel is compiled for: SSSE3, which few machines have without SSE4; AVX3_DL, which adds nothing that kernels use
@@ -86,7 +87,7 @@ function(isolux_link target visibility)
   foreach(package IN LISTS ARGN)
     isolux_find_package(${package} found)
     if(NOT found)
-      message(FATAL_ERROR "${target} needs the package ${package}; see tools/packages.txt")
+      message(FATAL_ERROR "${target} needs the package ${package}${found_why}; see tools/packages.txt")
     endif()
     if(visibility STREQUAL "PRIVATE" AND package IN_LIST ISOLUX_HEADER_PACKAGES)
       set(found $<BUILD_INTERFACE:${found}>)

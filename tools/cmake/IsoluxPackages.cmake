@@ -1,10 +1,11 @@
 # Where every third-party package is found, once: isolux_find_package(NAME RESULT) sets RESULT to the targets to link, or to
-# NOTFOUND. The same file is installed with the package, so that a consumer finds what our static libraries were built on.
+# NOTFOUND, and then RESULT_why to what else is missing, if that is known. The same file is installed with the package, so that a consumer finds what our static libraries were built on.
 include_guard(GLOBAL)
 
 function(isolux_find_package name result)
   set(CMAKE_FIND_PACKAGE_TARGETS_GLOBAL ON)  # a module's package is linked by programs of other folders
   set(targets "")
+  set(why "")
   if(name STREQUAL "ITK")
     find_package(ITK QUIET COMPONENTS ITKCommon ITKIOImageBase ITKIOMeta ITKIOTIFF ITKIOGDCM ITKIONRRD)
     if(ITK_FOUND)
@@ -26,6 +27,8 @@ function(isolux_find_package name result)
     find_package(PkgConfig QUIET)
     if(PkgConfig_FOUND)
       pkg_check_modules(${name} QUIET IMPORTED_TARGET GLOBAL ${name})
+    else()
+      set(why ", which is found by pkg-config: that is missing")
     endif()
     if(TARGET PkgConfig::${name})
       set(targets PkgConfig::${name})
@@ -69,4 +72,5 @@ function(isolux_find_package name result)
   else()
     set(${result} ${targets} PARENT_SCOPE)
   endif()
+  set(${result}_why "${why}" PARENT_SCOPE)
 endfunction()
