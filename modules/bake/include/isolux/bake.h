@@ -9,4 +9,5 @@
 #include <isolux/bake/light_points.h>
 #include <isolux/bake/scene_file.h>
 #include <isolux/bake/stages.h>
+#include <isolux/bake/version.h>
 #include <isolux/core/error.h>

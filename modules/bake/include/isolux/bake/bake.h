@@ -96,6 +96,7 @@ struct BakeResult {
   std::size_t unlit_texels = 0;  ///< filled from their lit neighbours
   /// Root mean squared error of e at the texels: where they are the sites, noise and reading_error together; else, and
   /// with TexelSites::kNeeded, that of texels which are lit by paths besides; NaN if one ray a site says nothing of it.
+  /// What reading between texels adds is not in it (TexelChoice::error is an estimate of that).
   double rmse_estimate = 0.0;
   double noise = 0.0;  ///< standard error of the sites' rays, rms; 0 with TexelSites::kNeeded
   /// What reading reflections from texels adds to that, or may add unseen (kIterated; rms): it is measured by paths at
