@@ -14,6 +14,7 @@
 #include "bake_in_parts.h"
 #include "bake_parts.h"
 #include "both_sides.h"
+#include "checked_stages.h"
 #include "light_by_need.h"
 #include "reading_error.h"
 #include "resampling_choice.h"
@@ -35,7 +36,7 @@ constexpr double kLeastSeconds = 1e-3;  ///< where a time is over before any ray
 BakeResult bake_paths(const Volume& volume, const Scene& scene, const BakeSettings& settings, FoundSites found,
                       const Stages& stages, const Run& run) {
   const auto resampler = stages.resamplers.create(settings.resampler.name, settings.resampler.settings);
-  const auto tracer = stages.tracers.create(settings.tracer.name, settings.tracer.settings);
+  const auto tracer = checked_tracer(settings.tracer, stages);
   const Lattice texels = texel_lattice(volume.lattice(), settings);
   BakeResult result = std::move(found.begun);
   const Stopwatch watch;

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "bake_parts.h"
+#include "checked_stages.h"
 #include "isovalue_parts.h"
 #include "site_figures.h"
 #include "standard_error.h"
@@ -30,8 +31,8 @@ class PartBaker {
         values_(value_range(volume)),
         texels_(texel_lattice(volume.lattice(), settings)),
         all_(site_request(volume, settings, texels_, scene.outer, run)),
-        sampler_(stages.samplers.create(settings.sampler.name, settings.sampler.settings)),
-        tracer_(stages.tracers.create(settings.tracer.name, settings.tracer.settings)),
+        sampler_(checked_sampler(settings.sampler, stages)),
+        tracer_(checked_tracer(settings.tracer, stages)),
         resampler_(stages.resamplers.create(settings.resampler.name, settings.resampler.settings)),
         result_(std::move(begun)) {}
 

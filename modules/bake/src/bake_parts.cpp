@@ -124,16 +124,6 @@ SiteRequest site_request(const Volume& volume, const BakeSettings& settings, con
   return request;
 }
 
-void require_traced(const SampleSet& samples, std::size_t sites, const std::string& name) {
-  const std::size_t count = samples.variance.size();
-  const bool is_one_each = samples.channels > 0 && samples.radiance.size() == count * std::size_t(samples.channels) &&
-                           samples.size() == count && (sites == 0 || count == sites);
-  if (is_one_each) return;
-  throw InvalidInput(
-      fmt::format("tracer {}: {} sites, of which it gave {} with {} radiances of {} channels and {} variances", name,
-                  sites, samples.size(), samples.radiance.size(), samples.channels, count));
-}
-
 int kept_rays_a_site(const BakeSettings& settings, std::size_t sites, int rays) {
   constexpr int kFewest = 4;
   if (settings.trace.bounces == 0) return rays;  // a bit each, no links
@@ -181,7 +171,6 @@ void finish_light(const Volume& volume, const SampleSet& samples, ResampledGrid 
 
 void finish_bake(const Volume& volume, SampleSet samples, const Resampler& resampler, const Lattice& texels,
                  const BakeSettings& settings, const Run& run, BakeResult& result) {
-  require_traced(samples, result.sites, settings.tracer.name);
   result.noise = standard_error(samples.variance);
   result.rmse_estimate = std::hypot(result.noise, result.reading_error);
   const Stopwatch watch;

@@ -4,7 +4,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <string>
 
 namespace isolux {
 
@@ -45,10 +44,6 @@ ValueRange require_traceable(const Volume& volume);
 /// \throw InvalidInput if the volume is not traceable or constant, the isovalues asked
 /// for lie outside its values, or the texels take more memory than the machine has
 void require_lightable(const Volume& volume, const BakeSettings& settings);
-
-/// Of samples that a tracer of anybody's gave for so many sites (0 where they are not counted). \throw InvalidInput
-/// naming it unless there is one of each a site
-void require_traced(const SampleSet& samples, std::size_t sites, const std::string& tracer);
 
 /// What a sampler is asked for, but for the number of sites a texel. Of known isovalues sites at texels are those that
 /// these level sets are read from; others lie on them. \throw Cancelled

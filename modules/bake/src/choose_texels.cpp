@@ -11,7 +11,7 @@
 #include <glm/geometric.hpp>
 #include <limits>
 
-#include "bake_parts.h"
+#include "checked_stages.h"
 #include "resampling_choice.h"
 
 namespace isolux {
@@ -48,9 +48,7 @@ Reference trace_reference(const Volume& volume, const Scene& scene, const BakeSe
   }
   TraceSettings rays = settings.trace;
   rays.rays = kPointRays;
-  const std::size_t count = sites.size();
   TraceResult traced = tracer.trace(volume, scene, std::move(sites), rays, run);
-  require_traced(traced.samples, count, settings.tracer.name);
   counters.rays += traced.counters.rays;
   reference.samples = std::move(traced.samples);
   return reference;
@@ -231,7 +229,7 @@ TexelChoice choose_texels(const Volume& volume, const Scene& scene, const BakeSe
   if (settings.lattice == TexelLattice::kVoxels)
     throw InvalidInput("texels at the voxels: their number is the volume's and cannot be chosen");
   if (scene.sides == LitSides::kBoth) return choose_for_both(volume, scene, settings, target, stages, run);
-  const auto tracer = stages.tracers.create(settings.tracer.name, settings.tracer.settings);
+  const auto tracer = checked_tracer(settings.tracer, stages);
   TexelChoice best{.texels = Index3(1), .error = std::numeric_limits<double>::infinity(), .counters = {}};
   const Reference reference = trace_reference(volume, scene, settings, *tracer, stages, run, best.counters);
   TraceSettings rays = settings.trace;
@@ -247,9 +245,7 @@ TexelChoice choose_texels(const Volume& volume, const Scene& scene, const BakeSe
     Corners corners = corners_of(volume, scene, texels, reference.samples.sites, settings.trace.gradient);
     ++other.seed;  // rays of a texel and of a point must not be the same ones
     const std::vector<Vec3f> before_corners = openness_of(corners.sites);
-    const std::size_t count = corners.sites.size();
     const TraceResult traced = tracer->trace(volume, scene, std::move(corners.sites), rays, other);
-    require_traced(traced.samples, count, settings.tracer.name);
     best.counters.rays += traced.counters.rays;
     const Readings read = read_between(corners, traced.samples, before_corners, reference.samples.size());
     const double error = Judge(reference, read, openness).error(texels.count());

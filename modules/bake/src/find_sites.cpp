@@ -2,6 +2,7 @@
 #include <isolux/core/stopwatch.h>
 
 #include "bake_parts.h"
+#include "checked_stages.h"
 #include "resampling_choice.h"
 #include "site_figures.h"
 
@@ -10,7 +11,7 @@ namespace isolux {
 FoundSites find_sites(const Volume& volume, OuterSide outer, const BakeSettings& settings, const Stages& stages,
                       const Run& run) {
   require_lightable(volume, settings);
-  const auto sampler = stages.samplers.create(settings.sampler.name, settings.sampler.settings);
+  const auto sampler = checked_sampler(settings.sampler, stages);
   const Lattice texels = texel_lattice(volume.lattice(), settings);
   const Stopwatch watch;
   SiteRequest request = site_request(volume, settings, texels, outer, run);
@@ -18,7 +19,6 @@ FoundSites find_sites(const Volume& volume, OuterSide outer, const BakeSettings&
   FoundSites found;
   BakeResult& result = found.begun;
   found.sites = sampler->sample(volume, request, run);
-  require_usable(found.sites, volume.lattice(), "sampler " + settings.sampler.name);
   result.sites = found.sites.size();
   count_sites(volume, request, settings, result);
   result.seconds["sites"] = watch.seconds();

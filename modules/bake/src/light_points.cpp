@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "bake_parts.h"
+#include "checked_stages.h"
 #include "residual_filter.h"
 #include "standard_error.h"
 
@@ -65,7 +66,7 @@ PointLight trace_points(const Volume& volume, const Scene& scene, std::span<cons
                         const TraceSettings& settings, const BackendChoice& tracer, const Stages& stages,
                         const Run& run, const LightReader* guess) {
   (void)require_traceable(volume);
-  const auto backend = stages.tracers.create(tracer.name, tracer.settings);
+  const auto backend = checked_tracer(tracer, stages);
   SitesOfPoints points = sites_of(volume, scene, world_positions, settings.gradient);
   PointLight light;
   light.radiance.assign(world_positions.size(), Vec3f(0.0f));

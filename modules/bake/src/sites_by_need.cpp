@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "bake_parts.h"
+#include "checked_stages.h"
 #include "texel_judge.h"
 
 namespace isolux {
@@ -154,7 +155,7 @@ BakeResult bake_scattered_by_need(const Volume& volume, const Scene& scene, cons
   if (iterates(settings) && settings.trace.bounces != 0)
     throw InvalidInput("scattered sites by need: reflections are followed by paths, not iterated");
   const auto resampler = stages.resamplers.create(settings.resampler.name, settings.resampler.settings);
-  const auto tracer = stages.tracers.create(settings.tracer.name, settings.tracer.settings);
+  const auto tracer = checked_tracer(settings.tracer, stages);
   const Lattice texels = texel_lattice(volume.lattice(), settings);
   BakeSettings even = settings;
   even.samples = (settings.samples + 1) / 2;

@@ -124,6 +124,28 @@ TEST(PlugIns, TracersHaveToLightTheTexelsThatAreChosenFrom) {
               HasSubstr("tracer mine: "));
 }
 
+TEST(PlugIns, TracersHaveToLightEverySiteHoweverTheyAreUsed) {
+  const auto too_few = [](SampleSet& samples) { samples.variance.resize(3); };
+  const auto in_parts = [](BakeSettings settings, const Stages& stages) {
+    settings.sampler = settings.resampler = {};
+    settings.samples = 0;
+    (void)bake(read_volume("gen:gyroid:9"), {}, settings, stages, {});
+  };
+  const auto by_need = [](BakeSettings settings, const Stages& stages) {
+    settings.texel_sites = TexelSites::kNeeded;
+    (void)bake(read_volume("gen:gyroid:9"), {}, settings, stages, {});
+  };
+  const auto at_points = [](const BakeSettings& settings, const Stages& stages) {
+    const std::vector<Vec3f> points{Vec3f(0.3f), Vec3f(0.4f), Vec3f(0.5f), Vec3f(0.6f)};
+    (void)light_points(read_volume("gen:gyroid:9"), {}, points, settings.trace, settings.tracer, stages, {});
+  };
+  for (const std::function<void(const BakeSettings&, const Stages&)>& light :
+       std::vector<std::function<void(const BakeSettings&, const Stages&)>>{in_parts, by_need, at_points}) {
+    EXPECT_EQ(error_of<SampleSet>([](SampleSet&) {}, light), "");
+    EXPECT_THAT(error_of<SampleSet>(too_few, light), HasSubstr("tracer mine: "));
+  }
+}
+
 TEST(PlugIns, ResamplersHaveToGiveWhatTheyAreAskedFor) {
   const auto error = [](std::function<void(ResampledGrid&)> spoil) {
     return error_of<ResampledGrid>(std::move(spoil));
