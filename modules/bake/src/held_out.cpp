@@ -102,7 +102,8 @@ std::size_t places_to_judge_by(std::size_t sites, const Scene& scene, const Bake
   const bool is_fine = settings.target_rmse > 0.0 && settings.target_rmse < kRoughError;
   const double paths = paths_to_judge_by(sites, settings);
   const double places = std::clamp(paths / (kPathsOfEach * (is_fine ? 4.0 : 1.0)), kFewestPlaces, kMostPlaces);
-  return std::size_t(std::min(places, paths / kFewestPathsOfEach)) / std::size_t(share_by_length(scene));
+  const double affordable = std::min(places, paths / kFewestPathsOfEach) / double(share_by_length(scene));
+  return std::max<std::size_t>(1, std::size_t(affordable));
 }
 
 TraceSettings paths_of_each(std::size_t places, std::size_t sites, const Scene& scene, const BakeSettings& settings) {

@@ -66,6 +66,9 @@ void choose_density(BakeSettings& settings, const Lattice& volume) {
     else
       settings.texels_a_cell = fit && in_cells ? density.usual : 1.0;
   }
+  // An error asked is that of the texels themselves, not of reading between them.
+  if (settings.target_rmse > 0.0 && settings.resampler.settings.contains("denoise"))
+    settings.resampler.settings.try_emplace("sharpen", "false");
   if (!fit) return;
   const bool fine = settings.texels_a_cell > density.slopes;
   Settings& options = settings.resampler.settings;

@@ -112,6 +112,28 @@ TEST(Target, EndsInTime) {
   EXPECT_GT(result.most_rays, 4u);  // which it begins with, a tenth of the time even on slow machines
 }
 
+// Sharper texels are right between themselves, and an error asked is their own.
+TEST(Target, LeavesDenoisedTexelsBluntUnlessTold) {
+  BakeSettings settings;
+  settings.resampler.settings = {{"denoise", "true"}};
+  const Lattice volume = read_volume("gen:gyroid:9").lattice();
+  EXPECT_FALSE(with_defaults(settings, volume, builtin_stages()).resampler.settings.contains("sharpen"));
+  settings.target_rmse = 0.02;
+  EXPECT_EQ(with_defaults(settings, volume, builtin_stages()).resampler.settings.at("sharpen"), "false");
+  settings.resampler.settings["sharpen"] = "true";
+  EXPECT_EQ(with_defaults(settings, volume, builtin_stages()).resampler.settings.at("sharpen"), "true");
+}
+
+// Of long paths there are few for a tiny grid, but some.
+TEST(Target, TinyGridsThatReflectNearlyAllSayTheirError) {
+  Scene scene;
+  scene.albedo = {.keys = {{0.0f, Vec3f(0.97f)}}};
+  BakeSettings settings;
+  settings.trace.rays = 2;
+  const BakeResult result = bake(read_volume("gen:gyroid:4"), scene, settings, builtin_stages(), {});
+  EXPECT_GT(result.rmse_estimate, 0.0);  // not NaN either
+}
+
 // Whatever way rays are spent, a time that is over at once ends with the fewest that tell an error, and says so.
 TEST(Target, AShortTimeTakesTheFewestRays) {
   const Volume volume = read_volume("gen:gyroid:20");

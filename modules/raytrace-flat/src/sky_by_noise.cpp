@@ -21,17 +21,19 @@ std::map<std::uint32_t, std::vector<std::uint32_t>> by_rays(const Sites& sites, 
   return result;
 }
 
+constexpr float kUnknownVariance = std::numeric_limits<float>::max();
+
 /// Makes what there is of some sites so large a share.
 void scale(std::span<const std::uint32_t> sites, double share, SampleSet& samples) {
   const auto channels = std::size_t(samples.channels);
   for (const std::uint32_t site : sites) {
     for (std::size_t c = 0; c < channels; ++c) samples.radiance[site * channels + c] *= float(share);
-    samples.variance[site] *= float(share * share);
+    if (samples.variance[site] < kUnknownVariance) samples.variance[site] *= float(share * share);
   }
 }
 
 void add_to(std::vector<float>& sum, const std::vector<float>& part) {
-  for (std::size_t i = 0; i < sum.size(); ++i) sum[i] = std::min(sum[i] + part[i], std::numeric_limits<float>::max());
+  for (std::size_t i = 0; i < sum.size(); ++i) sum[i] = std::min(sum[i] + part[i], kUnknownVariance);
 }
 
 /// Traces step by step, and says what part of all that is.
