@@ -2,12 +2,10 @@
 import json
 import math
 import os
-import re
 import struct
-import subprocess
 import unittest
 
-from support import ISOLUX, CommandLineTest, nrrd_header, ply
+from support import CommandLineTest, nrrd_header, ply
 
 
 class Info(CommandLineTest):
@@ -282,27 +280,6 @@ class StoredTypes(CommandLineTest):
             files.append((info, self.read("plain.ply"), self.read("lit.ply")))
         for one in files[1:]:
             self.assertEqual(one, files[0])
-
-
-class Program(CommandLineTest):
-    def test_version_and_help(self):
-        self.assertRegex(self.succeed("--version").stdout, r"^isolux \d+\.\d+\.\d+\n$")
-        for command in ("info", "backends", "extract", "bake", "render", "probe", "convert"):
-            self.assertIn(command, self.succeed("--help").stdout)
-            self.assertIn("--", self.succeed(command, "--help").stdout)
-            self.assertEqual(self.succeed(command, "--version").stdout, self.succeed("--version").stdout)
-
-    def test_documentation_names_every_option(self):
-        with open(os.path.join(os.path.dirname(os.path.abspath(__file__)), "../../docs/command-line.md")) as file:
-            page = file.read()
-        for command in ("info", "backends", "extract", "bake", "render", "probe", "convert"):
-            for option in re.findall(r"^ +(?:-\w,)?(--[a-z-]+)", self.succeed(command, "--help").stdout, re.MULTILINE):
-                self.assertRegex(page, option + r"\b", command)
-
-    def test_links_no_gl(self):
-        linked = subprocess.run(["ldd", ISOLUX], capture_output=True, text=True, check=True).stdout.lower()
-        for library in ("libgl.", "libglx", "libegl", "libopengl", "libglfw", "libepoxy", "libx11"):
-            self.assertNotIn(library, linked)
 
 
 if __name__ == "__main__":

@@ -1,0 +1,32 @@
+"""What the program says of itself, and what it is linked with."""
+import os
+import re
+import subprocess
+import unittest
+
+from support import ISOLUX, CommandLineTest
+
+
+class Program(CommandLineTest):
+    def test_version_and_help(self):
+        self.assertRegex(self.succeed("--version").stdout, r"^isolux \d+\.\d+\.\d+\n$")
+        for command in ("info", "backends", "extract", "bake", "render", "probe", "convert"):
+            self.assertIn(command, self.succeed("--help").stdout)
+            self.assertIn("--", self.succeed(command, "--help").stdout)
+            self.assertEqual(self.succeed(command, "--version").stdout, self.succeed("--version").stdout)
+
+    def test_documentation_names_every_option(self):
+        with open(os.path.join(os.path.dirname(os.path.abspath(__file__)), "../../docs/command-line.md")) as file:
+            page = file.read()
+        for command in ("info", "backends", "extract", "bake", "render", "probe", "convert"):
+            for option in re.findall(r"^ +(?:-\w,)?(--[a-z-]+)", self.succeed(command, "--help").stdout, re.MULTILINE):
+                self.assertRegex(page, option + r"\b", command)
+
+    def test_links_no_gl(self):
+        linked = subprocess.run(["ldd", ISOLUX], capture_output=True, text=True, check=True).stdout.lower()
+        for library in ("libgl.", "libglx", "libegl", "libopengl", "libglfw", "libepoxy", "libx11"):
+            self.assertNotIn(library, linked)
+
+
+if __name__ == "__main__":
+    unittest.main()
