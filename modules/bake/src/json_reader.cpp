@@ -76,8 +76,12 @@ float JsonObject::positive(const char* key) const {
 
 nlohmann::json parse_json(const std::string& text, const std::string& name) {
   using nlohmann::json;
+  constexpr int kDeepest = 64;  // a scene has 4; the library writes each level out on the stack, for messages too
   std::vector<std::set<std::string>> objects;
-  const auto look = [&](int /*depth*/, json::parse_event_t event, json& parsed) {
+  const auto look = [&](int depth, json::parse_event_t event, json& parsed) {
+    if (depth > kDeepest)
+      throw InvalidInput(
+          fmt::format("{}: objects and arrays within each other: at most {} are allowed", name, kDeepest));
     if (event == json::parse_event_t::object_start) objects.emplace_back();
     if (event == json::parse_event_t::object_end) objects.pop_back();
     if (event == json::parse_event_t::key && !objects.back().insert(parsed.get<std::string>()).second)

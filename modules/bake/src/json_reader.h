@@ -49,8 +49,8 @@ class JsonObject {
   std::string place_;
 };
 
-/// A text as JSON. \throw InvalidInput naming `name` for what is none, a number beyond doubles, or a key given twice,
-/// of which the library would take the last
+/// A text as JSON. \throw InvalidInput naming `name` for what is none, a number beyond doubles, a key given twice, of
+/// which the library would take the last, or more than 64 objects and arrays within each other
 [[nodiscard]] nlohmann::json parse_json(const std::string& text, const std::string& name);
 
 /// The numbers of an array of `count`, each within a float's range. \throw InvalidInput naming `place`

@@ -5,14 +5,20 @@
 #include <isolux/core/error.h>
 #include <isolux/volume_io/read.h>
 
+#include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <optional>
+
+#include "json_reader.h"
 
 namespace isolux {
 namespace {
 
 constexpr const char* kQuantity = "irradiance/pi";
+constexpr const char* kSceneName = "isolux.scene of the light";
 
 nlohmann::json choice_to_json(const BackendChoice& choice) {
   nlohmann::json json{{"name", choice.name}};
@@ -25,10 +31,18 @@ std::optional<Scene> scene_of(const LightFile& light) {
   const auto it = light.metadata.find("isolux.scene");
   if (it == light.metadata.end()) return std::nullopt;
   // An image environment is described, not repeated: what shading needs is the albedo and the outer side.
-  auto json = nlohmann::json::parse(it->second, nullptr, false);
-  if (json.is_discarded() || !json.is_object()) throw InvalidInput("isolux.scene of the light: not a JSON object");
+  auto json = parse_json(it->second, kSceneName);
+  if (!json.is_object()) throw InvalidInput(fmt::format("{}: not a JSON object", kSceneName));
   json.erase("environment");
-  return parse_scene(json.dump(), "", "isolux.scene of the light");
+  return parse_scene(json.dump(), "", kSceneName);
+}
+
+/// Whether the environment of a scene, which may be anything, is an image.
+bool has_image(const nlohmann::json& scene) {
+  const auto environment = scene.find("environment");
+  if (environment == scene.end() || !environment->is_object()) return false;
+  const auto type = environment->find("type");
+  return type != environment->end() && *type == "image";
 }
 
 }  // namespace
@@ -109,10 +123,8 @@ std::optional<Scene> light_scene(const LightFile& light) {
   const auto it = light.metadata.find("isolux.scene");
   if (it == light.metadata.end()) return std::nullopt;
   const auto json = nlohmann::json::parse(it->second, nullptr, false);
-  if (!json.is_object()) return std::nullopt;
-  const auto environment = json.find("environment");
-  if (environment != json.end() && environment->value("type", "") == "image") return std::nullopt;
-  return parse_scene(it->second, "", "isolux.scene of the light");
+  if (!json.is_object() || has_image(json)) return std::nullopt;
+  return parse_scene(it->second, "", kSceneName);
 }
 
 SurfaceColour surface_colour(const Scene& scene, float isovalue) {
@@ -129,7 +141,9 @@ int light_bounces(const LightFile& light) {
   const auto json = nlohmann::json::parse(it->second, nullptr, false);
   if (!json.is_object()) return kAllBounces;
   const auto bounces = json.find("bounces");
-  return bounces != json.end() && bounces->is_number_integer() ? bounces->get<int>() : kAllBounces;
+  if (bounces == json.end() || !bounces->is_number_unsigned()) return kAllBounces;
+  constexpr auto kMost = std::uint64_t(std::numeric_limits<int>::max());
+  return int(std::min(bounces->get<std::uint64_t>(), kMost));
 }
 
 OuterSide light_outer(const LightFile& light) { return scene_of(light).value_or(Scene{}).outer; }

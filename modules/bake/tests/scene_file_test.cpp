@@ -35,6 +35,18 @@ TEST(SceneFile, NamesWhatItCannotRead) {
   EXPECT_EQ(refusal("{]"), "s.json: not JSON at byte 2");
 }
 
+// The library writes values for messages level by level on the stack, which a million of them overflow.
+TEST(SceneFile, RefusesJsonOfAnyDepth) {
+  constexpr std::size_t kLevels = 1000000;
+  const std::string arrays = std::string(kLevels, '[') + std::string(kLevels, ']');
+  EXPECT_EQ(refusal("{\"lights\":" + arrays + "}"),
+            "s.json: objects and arrays within each other: at most 64 are allowed");
+  std::string objects;
+  for (std::size_t level = 0; level < kLevels; ++level) objects += "{\"type\":";
+  EXPECT_EQ(refusal("{\"lights\":[" + objects + "1" + std::string(kLevels, '}') + "]}"),
+            "s.json: objects and arrays within each other: at most 64 are allowed");
+}
+
 TEST(SceneFile, HoldsLampsOfAnySize) {
   const Scene scene = parse_scene(
       R"({"lights":[{"type":"rectangle","center":[0,0,0],"u":[1e-25,0,0],"v":[0,1e-25,0],"radiance":[1,1,1]}]})", "",
