@@ -2,11 +2,12 @@
 #include <isolux/raytrace_flat/flat_tracer.h>
 
 #include <algorithm>
-#include <cmath>
+#include <cstdint>
 #include <limits>
 #include <utility>
 #include <vector>
 
+#include "morton.h"
 #include "path_tracer.h"
 #include "trace_request.h"
 #include "wide/net_mean.h"
@@ -16,24 +17,11 @@ namespace {
 
 constexpr std::size_t kSitesABlock = 32;
 
-/// One path of a site: the stratum of its first direction and what it brought.
+/// One path of a site: the stratum of its first direction, by morton_place(), and what it brought.
 struct PathValue {
   std::uint64_t stratum = 0;
   Vec3 radiance{0.0};
 };
-
-// The bits of two numbers interleaved: neighbours on this curve are mostly neighbours in the square (Morton 1966).
-std::uint64_t morton_place(const UnitPair& pair) {
-  const auto spread = [](double unit) {
-    auto x = std::uint64_t(unit * 0x1p24);
-    x = (x | x << 32) & 0x1F00000000FFFFull;
-    x = (x | x << 16) & 0x1F0000FF0000FFull;
-    x = (x | x << 8) & 0x100F00F00F00F00Full;
-    x = (x | x << 4) & 0x10C30C30C30C30C3ull;
-    return (x | x << 2) & 0x1249249249249249ull;
-  };
-  return spread(pair.u) | spread(pair.v) << 1;
-}
 
 // Squared standard error of the mean, mean over the channels. Plain variance / n would count the differences between
 // far directions, which stratification has removed; differences of neighbours in the order of the strata keep what is
@@ -98,7 +86,7 @@ class ScalarTracer final : public FlatTracer {
       UnitPair first{};
       paths[path].radiance = tracer.radiance(Vec3(sites.positions[site]), Vec3(sites.normals[site]),
                                              sites.isovalues[site], numbers, std::uint32_t(path), first, counters);
-      paths[path].stratum = morton_place(first);
+      paths[path].stratum = morton_place(std::uint32_t(first.u * 0x1p32), std::uint32_t(first.v * 0x1p32));
       sum += paths[path].radiance;
     }
     if (!paths.empty()) sum /= double(paths.size());

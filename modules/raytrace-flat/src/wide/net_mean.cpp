@@ -7,16 +7,10 @@
 #include <map>
 #include <numeric>
 
+#include "morton.h"
+
 namespace isolux::wide {
 namespace {
-
-/// Place of a point along a curve of Morton's.
-std::uint64_t morton_place(const SobolPoints& points, std::uint32_t i) {
-  std::uint64_t key = 0;
-  for (int bit = 31; bit >= 0; --bit)
-    key = key << 2 | std::uint64_t(points.u[i] >> bit & 1) << 1 | (points.v[i] >> bit & 1);
-  return key;
-}
 
 constexpr float kUnknownVariance = std::numeric_limits<float>::max();
 
@@ -26,9 +20,8 @@ NetMean::NetMean(const SobolPoints& points, std::size_t rays, std::size_t first,
     : order_(rays), share_(share) {
   // Neighbours on the curve share the small squares of the net, and still do after a digital shift.
   std::iota(order_.begin(), order_.end(), 0u);
-  std::sort(order_.begin(), order_.end(), [&](std::uint32_t a, std::uint32_t b) {
-    return morton_place(points, std::uint32_t(first) + a) < morton_place(points, std::uint32_t(first) + b);
-  });
+  const auto place = [&](std::uint32_t ray) { return morton_place(points.u[first + ray], points.v[first + ray]); };
+  std::sort(order_.begin(), order_.end(), [&](std::uint32_t a, std::uint32_t b) { return place(a) < place(b); });
 }
 
 NetMean::Moments NetMean::moments(std::span<const Vec3> values) const {
