@@ -3,6 +3,7 @@
 #include <isolux/raytrace_flat/gather.h>
 
 #include <algorithm>
+#include <cstdint>
 #include <mutex>
 
 #include "prefetch_sites.h"
@@ -22,7 +23,7 @@ TraceCounters gather(const Volume& volume, const Sites& sites, const GatherSetti
     throw InvalidInput(fmt::format("first_ray = {}: allowed is 0 and more", settings.first_ray));
   for (const std::uint32_t site : settings.only)
     if (site >= sites.size()) throw InvalidInput(fmt::format("site {} of {}", site, sites.size()));
-  const int last = settings.first_ray + settings.rays;
+  const auto last = std::int64_t(settings.first_ray) + settings.rays;
   if (settings.nets == RayNets::kInterleaved && settings.first_ray > 0 && last > settings.all_rays)
     throw InvalidInput("interleaved nets go from the first ray on or in parts of all_rays");
   const wide::RayRange range{.first = std::size_t(settings.first_ray),

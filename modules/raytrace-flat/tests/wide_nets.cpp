@@ -7,6 +7,7 @@
 
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <limits>
 #include <map>
 #include <mutex>
 #include <set>
@@ -144,6 +145,9 @@ TEST(InterleavedNets, CannotGoOn) {
   const Sites sites = lattice_of_sites(4, 1);
   const GatherSettings settings{.rays = 4, .first_ray = 4, .nets = RayNets::kInterleaved};
   EXPECT_THROW((void)gather(volume, sites, settings, {}, [](const GatheredRays&) {}), InvalidInput);
+  const GatherSettings beyond_int{
+      .rays = 4, .all_rays = 16, .first_ray = std::numeric_limits<int>::max(), .nets = RayNets::kInterleaved};
+  EXPECT_THROW((void)gather(volume, sites, beyond_int, {}, [](const GatheredRays&) {}), InvalidInput);
   LightLinks links(volume, sites, {.rays = 4, .nets = RayNets::kInterleaved}, {});
   const std::vector<std::uint32_t> first{0};
   EXPECT_THROW(links.extend(first, {}), InvalidInput);
