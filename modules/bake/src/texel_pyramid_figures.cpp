@@ -1,4 +1,5 @@
 #include <isolux/core/parallel.h>
+#include <isolux/core/release.h>
 
 #include <algorithm>
 #include <array>
@@ -21,7 +22,7 @@ constexpr float kNoLight = -1.0f;
 /// Of this size, whatever it held: never two of them at a time.
 template <class T>
 void renew(std::vector<T>& values, std::size_t size) {
-  if (values.capacity() < size) values = {};
+  if (values.capacity() < size) release(values);
   values.resize(size);
 }
 

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 #include <isolux/core/error.h>
 #include <isolux/core/parallel.h>
+#include <isolux/core/release.h>
 #include <isolux/resample/light_reader.h>
 
 #include <algorithm>
@@ -118,7 +119,7 @@ struct LightReader::Impl {
   NearField near_field;
   IndexToWorld volume_to_texels;
   IndexToWorld volume_frame;
-  IlluminationGrid offsets;  ///< its detail without slopes of either kind
+  IlluminationGrid offsets;  ///< its detail without slopes of either kind; no values where there are bricks
   IlluminationGrid slopes;
   std::array<IlluminationGrid, 3> normal_slopes;
   std::optional<LightBricks> bricks;
@@ -151,7 +152,7 @@ LightReader::LightReader(const Volume& volume, const IlluminationGrid& light, Te
     LightBricks bricks = make_light_bricks(volume, impl->offsets, lit);
     if (bricks.stored() < light.values.size() * std::size_t(detail.numbers())) {
       impl->bricks = std::move(bricks);
-      impl->offsets.values = {};
+      release(impl->offsets.values);
     }
   }
   const auto keep = [&](const std::vector<float>& slopes, IlluminationGrid& grid) {
@@ -162,8 +163,8 @@ LightReader::LightReader(const Volume& volume, const IlluminationGrid& light, Te
   };
   keep(detail.slopes, impl->slopes);
   for (unsigned a = 0; a < 3; ++a) keep(detail.normal_slopes[a], impl->normal_slopes[a]);
-  impl->offsets.detail.slopes = {};
-  impl->offsets.detail.normal_slopes = {};
+  release(impl->offsets.detail.slopes);
+  for (std::vector<float>& slopes : impl->offsets.detail.normal_slopes) release(slopes);
   impl_ = std::move(impl);
 }
 

@@ -89,6 +89,28 @@ TEST(LightReader, SeesAWallInFrontOfASurface) {
   EXPECT_EQ(between, 0.0);
 }
 
+// What it has in another form takes no memory: slopes have arrays of their own, and in bricks all of them.
+TEST(LightReader, HoldsNothingTwice) {
+  const Volume volume = wavy_volume();
+  IlluminationGrid light(cell_lattice(volume.lattice(), {24, 24, 24}), 1);
+  light.detail.slopes.assign(light.values.size(), 0.1f);
+  for (std::vector<float>& slopes : light.detail.normal_slopes) slopes.assign(light.values.size(), 0.1f);
+  const ValueRange all = value_range(volume);
+  light.detail.isovalues = ValueRange{.low = all.high - 1e-3f * (all.high - all.low), .high = all.high};
+  const auto idle = [](const LightReader& reader) {
+    const LightDetail& detail = reader.offsets().detail;
+    return detail.slopes.capacity() + detail.normal_slopes[0].capacity() + detail.normal_slopes[1].capacity() +
+           detail.normal_slopes[2].capacity();
+  };
+  const LightReader dense(volume, light);
+  EXPECT_EQ(dense.offsets().values.size(), light.values.size());
+  EXPECT_EQ(idle(dense), 0u);
+  const LightReader bricks(volume, light, TexelStorage::kBricks);
+  ASSERT_NE(bricks.bricks(), nullptr);
+  EXPECT_EQ(bricks.offsets().values.capacity(), 0u);
+  EXPECT_EQ(idle(bricks), 0u);
+}
+
 TEST(LightReader, RefusesSlopesOfAnotherGrid) {
   const Volume volume = ramp_volume({5, 5, 5});
   IlluminationGrid light(cell_lattice(volume.lattice()), 1);
