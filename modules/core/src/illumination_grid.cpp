@@ -12,6 +12,16 @@ IlluminationGrid::IlluminationGrid(const Lattice& texels, int channel_count)
   values.assign(require_countable(texels) * std::size_t(channels), 0.0f);
 }
 
+namespace {
+
+void require_slopes(const IlluminationGrid& light, const std::vector<float>& slopes, bool there_are) {
+  if (slopes.size() == (there_are ? light.values.size() : 0)) return;
+  throw InvalidInput(fmt::format("a light of {} values with {} slopes: none or as many are needed", light.values.size(),
+                                 slopes.size()));
+}
+
+}  // namespace
+
 void require_complete(const IlluminationGrid& light) {
   const Index3& size = light.lattice.size;
   if (size.x < 1 || size.y < 1 || size.z < 1)
@@ -23,6 +33,9 @@ void require_complete(const IlluminationGrid& light) {
                                    size.x, size.y, size.z, light.channels));
   }
   require_spanning(light.lattice.frame, "a light");
+  const LightDetail& detail = light.detail;
+  require_slopes(light, detail.slopes, !detail.slopes.empty());
+  for (const auto& slopes : detail.normal_slopes) require_slopes(light, slopes, !detail.normal_slopes[0].empty());
 }
 
 Vec3f IlluminationGrid::at_index(const Vec3& texel_index) const {

@@ -75,6 +75,22 @@ TEST(Misuse, LightsThatAreNotCompleteAreRefused) {
   EXPECT_THROW(require_complete(light), InvalidInput);
 }
 
+TEST(Misuse, LightsWithSlopesOfSomeTexelsAreRefused) {
+  IlluminationGrid light(cell_lattice(rising_volume().lattice()), 1);
+  light.detail.slopes.assign(light.values.size(), 1.0f);
+  for (std::vector<float>& slopes : light.detail.normal_slopes) slopes.assign(light.values.size(), 1.0f);
+  EXPECT_NO_THROW(require_complete(light));
+  light.detail.normal_slopes[2].clear();
+  EXPECT_THROW(require_complete(light), InvalidInput);
+  light.detail.normal_slopes = {};
+  EXPECT_NO_THROW(require_complete(light));
+  light.detail.normal_slopes[2].assign(light.values.size(), 1.0f);
+  EXPECT_THROW(require_complete(light), InvalidInput);
+  light.detail.normal_slopes[2].clear();
+  light.detail.slopes.pop_back();
+  EXPECT_THROW(require_complete(light), InvalidInput);
+}
+
 TEST(Misuse, BlocksOfNothingAreRefused) {
   EXPECT_THROW(parallel_blocks(10, 0, isolux::Run{}, "", [](const Block&) {}), InvalidInput);
 }

@@ -1,6 +1,5 @@
 #include "link_solver.h"
 
-#include <fmt/format.h>
 #include <isolux/core/error.h>
 #include <isolux/core/parallel.h>
 #include <isolux/core/random.h>
@@ -169,10 +168,6 @@ TargetLight LightLinks::Solver::at_targets(const std::vector<float>& e) {
   if (grid.lattice.size != links_.rounds_->targets->texels().size || grid.channels != seen_.channels)
     throw InvalidInput("the grid of reflected light is not of the links' texels and the scene's channels");
   require_complete(grid);
-  if (!grid.detail.slopes.empty() && grid.detail.slopes.size() != grid.values.size())
-    throw InvalidInput(
-        fmt::format("a grid of reflected light with {} slopes for {} values: allowed is one each, or none",
-                    grid.detail.slopes.size(), grid.values.size()));
   if (!grid.detail.slopes.empty()) return sloped(grid);
   light_ = std::move(grid.values);
   return {.values = light_, .channels = channels_};

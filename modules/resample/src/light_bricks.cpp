@@ -1,5 +1,3 @@
-#include <fmt/format.h>
-#include <isolux/core/error.h>
 #include <isolux/resample/light_bricks.h>
 
 #include <algorithm>
@@ -65,12 +63,6 @@ void append_brick(const Lattice& texels, int channels, const Index3& page, const
 
 LightBricks make_light_bricks(const Volume& volume, const IlluminationGrid& light, const ValueRange& isovalues) {
   require_complete(light);
-  for (const std::vector<float>* part : {&light.detail.slopes, &light.detail.normal_slopes[0],
-                                         &light.detail.normal_slopes[1], &light.detail.normal_slopes[2]}) {
-    if (!part->empty() && part->size() != light.values.size())
-      throw InvalidInput(fmt::format("a light with {} slopes for {} values: allowed is one each, or none", part->size(),
-                                     light.values.size()));
-  }
   LightBricks bricks;
   bricks.channels = light.channels;
   const Lattice& texels = light.lattice;

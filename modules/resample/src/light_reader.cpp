@@ -1,5 +1,3 @@
-#include <fmt/format.h>
-#include <isolux/core/error.h>
 #include <isolux/core/parallel.h>
 #include <isolux/core/release.h>
 #include <isolux/resample/light_reader.h>
@@ -86,13 +84,6 @@ void move_to_isovalue(IlluminationGrid& light, const NearField& near_field, floa
   });
 }
 
-void require_slopes(const IlluminationGrid& light, const std::vector<float>& slopes, bool wanted) {
-  const std::size_t count = wanted ? light.values.size() : 0;
-  if (slopes.size() == count) return;
-  throw InvalidInput(fmt::format("a light of {} values with {} slopes: none or as many are needed", light.values.size(),
-                                 slopes.size()));
-}
-
 }  // namespace
 
 struct LightReader::Impl {
@@ -131,8 +122,6 @@ struct LightReader::Impl {
 LightReader::LightReader(const Volume& volume, const IlluminationGrid& light, TexelStorage storage, const Run& run) {
   const LightDetail& detail = light.detail;
   require_complete(light);
-  require_slopes(light, detail.slopes, !detail.slopes.empty());
-  for (const auto& slopes : detail.normal_slopes) require_slopes(light, slopes, !detail.normal_slopes[0].empty());
   auto impl = std::make_unique<Impl>(Impl{.near_field = NearField(volume),
                                           .volume_to_texels = index_to_index(volume.lattice(), light.lattice),
                                           .volume_frame = volume.lattice().frame,

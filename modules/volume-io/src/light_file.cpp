@@ -217,7 +217,10 @@ const IlluminationGrid& light_of_side(const LightFile& light, LevelSetSide side,
 void write_light(const LightFile& light, const std::string& path, const std::string& space,
                  const LightWriteOptions& options) {
   require_complete(light.grid);
-  if (light.inner) require_like(light.grid, *light.inner, path);
+  if (light.inner) {
+    require_complete(*light.inner);
+    require_like(light.grid, *light.inner, path);
+  }
   const auto sides = sides_of(light);
   const int numbers = light.grid.detail.numbers();
   detail::NrrdImage image{.type = ScalarType::kFloat32,

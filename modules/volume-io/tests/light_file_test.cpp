@@ -224,6 +224,19 @@ TEST(LightFile, RefusesOtherLayoutsAndKeys) {
   }
 }
 
+TEST(LightFile, RefusesToWriteSlopesOfSomeTexels) {
+  const test::TemporaryFolder folder;
+  const auto refuses = [&](auto spoil) {
+    LightFile light = example_of_both(1, true, true);
+    spoil(light);
+    EXPECT_THAT(test::error_of([&] { write_light(light, folder.file("l.nrrd"), ""); }), HasSubstr("slopes"));
+    EXPECT_FALSE(std::filesystem::exists(folder.file("l.nrrd")));
+  };
+  refuses([](LightFile& light) { light.grid.detail.slopes.pop_back(); });
+  refuses([](LightFile& light) { light.grid.detail.normal_slopes[2].clear(); });
+  refuses([](LightFile& light) { light.inner->detail.normal_slopes[1].pop_back(); });
+}
+
 // ITK's own NRRD reader is not among those that isolux links; teem's rules for it are those of the layout test above.
 TEST(LightFile, IsAVolumeTooWhenGrey) {
   const test::TemporaryFolder folder;

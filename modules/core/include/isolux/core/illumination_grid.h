@@ -63,7 +63,8 @@ struct IlluminationGrid {
   [[nodiscard]] Vec3f at_world(const Vec3& world) const;
 };
 
-/// \throw InvalidInput unless it has texels, 1 or 3 channels, a value for each, and axes that span a volume
+/// \throw InvalidInput unless it has texels, 1 or 3 channels, a value for each, axes that span a volume, and of each
+/// kind of slopes none or as many as values, those along the normal on all axes or on none
 void require_complete(const IlluminationGrid& light);
 
 }  // namespace isolux
