@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <limits>
 #include <vector>
 
 namespace isolux {
@@ -66,6 +68,21 @@ void require_placed(const SampleSet& samples) {
                                    samples.channels, samples.radiance.size()));
   }
   require_finite_light(samples);
+}
+
+double relative_noise(const SampleSet& samples) {
+  double variance = 0.0;
+  std::size_t known = 0;
+  for (const float v : samples.variance) {
+    if (v >= std::numeric_limits<float>::max()) continue;
+    variance += double(v);
+    ++known;
+  }
+  if (known == 0) return std::numeric_limits<double>::infinity();
+  double power = 0.0;
+  for (const float e : samples.radiance) power += double(e) * double(e);
+  if (!(power > 0.0)) return 0.0;
+  return variance / double(known) / (power / double(samples.radiance.size()));
 }
 
 void require_texels(const Lattice& texels) {

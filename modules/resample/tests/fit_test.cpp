@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <limits>
 #include <vector>
 
 #include "support.h"
@@ -110,6 +111,26 @@ TEST(Fit, FollowsLightThatChangesWithTheIsovalue) {
   // Half the light's range of .5 alternates from texel to texel.
   EXPECT_GT(error("false"), 0.05);
   EXPECT_LT(error("true"), 0.005);
+}
+
+// A tracer gives the largest float to samples of which it knows no variance: of some it says nothing of the others, and
+// of all of them that they may be anything, so that texels are means with finite numbers.
+TEST(Fit, StandsSamplesOfUnknownVariance) {
+  const Volume volume = wavy_volume();
+  const TrilinearField field(volume);
+  SampleSet samples =
+      random_samples(volume, 11 * 9 * 8 * 8, 1, [&](const Vec3& p, int) { return float(1.0 + 0.2 * field.value(p)); });
+  const Lattice texels = cell_lattice(volume.lattice());
+  const ResampledGrid known = fitted(volume, samples, texels);
+  samples.variance[7] = std::numeric_limits<float>::max();
+  const ResampledGrid one_unknown = fitted(volume, samples, texels);
+  EXPECT_EQ(one_unknown.grid.values, known.grid.values);
+  EXPECT_EQ(one_unknown.grid.detail.slopes, known.grid.detail.slopes);
+  samples.variance.assign(samples.size(), std::numeric_limits<float>::max());
+  const ResampledGrid none_known = fitted(volume, samples, texels);
+  for (const float v : none_known.grid.values) EXPECT_TRUE(std::isfinite(v));
+  // A texel's prior holds its slopes with 6,000 samples against some 8: to a thousandth of the 0.2 there is.
+  for (const float slope : none_known.grid.detail.slopes) EXPECT_NEAR(slope, 0.0f, 2e-3f);
 }
 
 // Light by the normal alone, whose normals turn round within a texel or two: three numbers a texel follow it where the

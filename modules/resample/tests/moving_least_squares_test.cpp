@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "support.h"
 
@@ -65,6 +66,16 @@ TEST(MovingLeastSquares, TakesMoreSamplesTheNoisierTheyAre) {
   samples.variance.assign(samples.size(), 0.03f);
   // From 16 samples to some 60: the noise left falls to about half.
   EXPECT_LT(error(), 0.7 * unaware);
+}
+
+// A tracer gives the largest float to samples of which it knows no variance: they say nothing of the others'.
+TEST(MovingLeastSquares, LeavesOutVariancesThatNobodyKnows) {
+  const Volume volume = ramp_volume({9, 9, 9});
+  const Lattice texels = cell_lattice(volume.lattice());
+  SampleSet samples = random_samples(volume, 4000, 1, [](const Vec3& p, int) { return float(std::sin(p.x)); });
+  const ResampledGrid known = smoothed(volume, samples, texels);
+  samples.variance[7] = std::numeric_limits<float>::max();
+  EXPECT_EQ(smoothed(volume, samples, texels).grid.values, known.grid.values);
 }
 
 TEST(MovingLeastSquares, StandsDegenerateSamples) {

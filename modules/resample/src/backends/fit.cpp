@@ -82,13 +82,7 @@ class Fit final : public Resampler {
   /// Noisy samples say less against the prior. Their mean variance counts and not each one's own: that is small where
   /// all of a sample's rays agreed by chance, and weighting by it would draw the light there.
   [[nodiscard]] FitDamping damping_for(const SampleSet& samples) const {
-    double variance = 0.0;
-    double power = 0.0;
-    for (const float v : samples.variance) variance += double(v);
-    for (const float e : samples.radiance) power += double(e) * double(e);
-    variance /= double(samples.variance.size());
-    power /= double(samples.radiance.size());
-    const double noise = power > 0.0 ? 1.0 + variance / (kMisfit * kMisfit * power) : 1.0;
+    const double noise = 1.0 + std::min(relative_noise(samples), kMostNoise) / (kMisfit * kMisfit);
     FitDamping damping{options_.value_prior * noise};
     std::size_t k = 1;
     if (options_.slopes) damping[k++] = options_.slope_prior * noise;
@@ -180,7 +174,8 @@ class Fit final : public Resampler {
 
   /// Root mean square of what no texture can say of the light, of the light's own; a typical value on real volumes.
   static constexpr double kMisfit = 0.07;
-  static constexpr int kRounds = 3;  ///< six gain 1 % more
+  static constexpr double kMostNoise = 1e4;  ///< as of samples of whose variance nothing is known
+  static constexpr int kRounds = 3;          ///< six gain 1 % more
 
   Options options_;
 };

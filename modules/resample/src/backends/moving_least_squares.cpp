@@ -4,6 +4,7 @@
 
 #include "local_fit.h"
 #include "sample_bins.h"
+#include "samples.h"
 #include "shepard_resample.h"
 
 namespace isolux::backends {
@@ -56,12 +57,7 @@ class MovingLeastSquares final : public Resampler {
  private:
   /// Enough samples that what noise leaves in their mean is a tenth of the light's own size.
   [[nodiscard]] static int count_for(const SampleSet& samples) {
-    double variance = 0.0;
-    double power = 0.0;
-    for (const float v : samples.variance) variance += double(v);
-    for (const float e : samples.radiance) power += double(e) * double(e);
-    const double noise = power > 0.0 ? variance * double(samples.channels) / power : 0.0;
-    return int(std::clamp(16.0 * (1.0 + 100.0 * noise), 16.0, 64.0));
+    return int(std::clamp(16.0 * (1.0 + 100.0 * relative_noise(samples)), 16.0, 64.0));
   }
 
   void fit_texel(const SampleSet& samples, const ShepardSpace& space, const Point& query, const Vec3& gradient,
