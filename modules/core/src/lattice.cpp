@@ -14,6 +14,18 @@ Mat3 IndexToWorld::gradient_to_world() const { return glm::transpose(glm::invers
 
 Vec3 IndexToWorld::spacing() const { return {glm::length(axes[0]), glm::length(axes[1]), glm::length(axes[2])}; }
 
+std::optional<std::size_t> point_at(const Lattice& lattice, const Vec3& index) {
+  constexpr double kTolerance = 0.01;
+  int point[3];
+  for (int a = 0; a < 3; ++a) {
+    const double nearest = std::floor(index[a] + 0.5);
+    if (!(std::fabs(index[a] - nearest) <= kTolerance) || nearest < 0.0 || nearest >= double(lattice.size[a]))
+      return {};
+    point[a] = int(nearest);
+  }
+  return lattice.offset(point[0], point[1], point[2]);
+}
+
 void require_spanning(const IndexToWorld& frame, std::string_view what) {
   constexpr double kLeastVolume = 1e-9;  // of axes of length 1
   const Vec3 lengths = frame.spacing();

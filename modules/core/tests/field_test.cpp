@@ -4,6 +4,7 @@
 #include <isolux/core/illumination_grid.h>
 #include <isolux/core/random.h>
 
+#include <cmath>
 #include <glm/geometric.hpp>
 #include <limits>
 
@@ -93,6 +94,15 @@ TEST(Lattice, IndexUndoesWorld) {
   const Volume volume = make_volume({5, 4, 6}, [](Vec3) { return 0.0; });
   const Vec3 p(1.25, 2.5, 3.75);
   EXPECT_LT(glm::length(volume.lattice().frame.index(volume.lattice().frame.world(p)) - p), 1e-13);
+}
+
+TEST(Lattice, FindsPointsButForTheRoundingOfFloats) {
+  const Lattice lattice{.size = {5, 4, 6}, .frame = {}};
+  EXPECT_EQ(point_at(lattice, {4.009, 2.991, 0.0}), lattice.offset(4, 3, 0));
+  EXPECT_EQ(point_at(lattice, {-0.009, 0.0, 5.009}), lattice.offset(0, 0, 5));
+  for (const Vec3 none : {Vec3(4.02, 3.0, 0.0), Vec3(0.5), Vec3(5.0, 0.0, 0.0), Vec3(0.0, -1.0, 0.0),
+                          Vec3(0.0, 0.0, 1e300), Vec3(std::nan(""), 0.0, 0.0)})
+    EXPECT_FALSE(point_at(lattice, none)) << none.x << " " << none.y << " " << none.z;
 }
 
 TEST(IlluminationGrid, ReproducesARampInsideAndClampsOutside) {

@@ -9,14 +9,12 @@
 #include <isolux/core/spread_labels.h>
 
 #include <algorithm>
-#include <cmath>
 #include <glm/common.hpp>
+#include <optional>
 
 namespace isolux {
 namespace {
 
-/// Float positions of sites at texel centres are off by less than this up to some 10,000 voxels an axis.
-constexpr double kTolerance = 0.01;
 constexpr std::size_t kEndsAPart = wide::CornerDraws::kMost;
 
 }  // namespace
@@ -87,15 +85,8 @@ bool LinkTargets::find_sites(const Sites& sites, const Run& run) {
 }
 
 std::uint32_t LinkTargets::texel_at(const Vec3f& index) const {
-  const Vec3 at = to_texel_.world(Vec3(index));
-  int i[3];
-  for (int a = 0; a < 3; ++a) {
-    const double nearest = std::floor(at[a] + 0.5);
-    if (!(std::fabs(at[a] - nearest) <= kTolerance) || nearest < 0.0 || nearest >= double(texels_.size[a]))
-      return kNoLabel;
-    i[a] = int(nearest);
-  }
-  return std::uint32_t(texels_.offset(i[0], i[1], i[2]));
+  const std::optional<std::size_t> texel = point_at(texels_, to_texel_.world(Vec3(index)));
+  return texel ? std::uint32_t(*texel) : kNoLabel;
 }
 
 LinkTargets::Draws LinkTargets::draws_of(std::uint64_t seed, std::size_t site) {

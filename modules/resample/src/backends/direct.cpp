@@ -20,21 +20,8 @@
 namespace isolux::backends {
 namespace {
 
-/// Float positions of sites at texel centres are off by less than this up to some 10,000 voxels an axis.
-constexpr double kTolerance = 0.01;
 /// Samples whose texels are found together.
 constexpr std::size_t kSamplesAPass = 65536;
-
-/// The texel whose centre is at `at` (texel index space).
-std::optional<std::size_t> texel_at(const Lattice& texels, const Vec3& at) {
-  int i[3];
-  for (int a = 0; a < 3; ++a) {
-    const double nearest = std::floor(at[a] + 0.5);
-    if (!(std::fabs(at[a] - nearest) <= kTolerance) || nearest < 0.0 || nearest >= double(texels.size[a])) return {};
-    i[a] = int(nearest);
-  }
-  return texels.offset(i[0], i[1], i[2]);
-}
 
 class Direct final : public Resampler {
  public:
@@ -127,7 +114,7 @@ class Direct final : public Resampler {
       const std::size_t count = std::min(kSamplesAPass, sites.size() - first);
       parallel_blocks(count, kSamplesAPass / 16, run, "", [&](const Block& block) {
         for (std::size_t i = block.begin; i < block.end; ++i)
-          found[i] = texel_at(texels, to_texels.world(Vec3(sites.positions[first + i])));
+          found[i] = point_at(texels, to_texels.world(Vec3(sites.positions[first + i])));
       });
       for (std::size_t i = 0; i < count; ++i) {
         if (!found[i]) throw InvalidInput(not_at_a_texel(sites, first + i));
@@ -157,7 +144,7 @@ class Direct final : public Resampler {
     const auto channels = std::size_t(grid.channels);
     std::vector<std::uint32_t> count(grid.lattice.count(), 1);
     for (const std::size_t s : repeated) {
-      const std::size_t texel = *texel_at(grid.lattice, to_texels.world(Vec3(sites.positions[s])));
+      const std::size_t texel = *point_at(grid.lattice, to_texels.world(Vec3(sites.positions[s])));
       const double share = 1.0 / double(++count[texel]);
       for (std::size_t c = 0; c < channels; ++c) {
         float& value = grid.values[texel * channels + c];

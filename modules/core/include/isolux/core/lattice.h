@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <optional>
 #include <string_view>
 
 namespace isolux {
@@ -36,6 +37,11 @@ struct Lattice {
 [[nodiscard]] inline double within_axis(double place, int points) {
   return place > 0.0 ? std::min(place, double(points - 1)) : 0.0;
 }
+
+/// The number, in the order of memory, of the point of `lattice` that lies at a place of its index space: within a
+/// hundredth of a step on each axis, which float positions are off by less than up to some 10,000 voxels an axis.
+/// Nothing if there is none.
+[[nodiscard]] std::optional<std::size_t> point_at(const Lattice& lattice, const Vec3& index);
 
 /// \throw InvalidInput, naming `what`, unless the axes span a volume: numbers whose determinant is not 0, with lengths
 /// that can be told from it
