@@ -94,6 +94,11 @@ TEST(Philox, GivesThePublishedBits) {
             (std::array<std::uint32_t, 4>{0xd16cfe09, 0x94fdcceb, 0x5001e420, 0x24126ea1}));
 }
 
+TEST(ReverseBits, TurnsEachBitRound) {
+  for (unsigned bit = 0; bit < 32; ++bit) EXPECT_EQ(reverse_bits(1u << bit), 0x80000000u >> bit);
+  EXPECT_EQ(reverse_bits(0x12345678u), 0x1E6A2C48u);
+}
+
 TEST(RandomStream, IsUniformAndKeyed) {
   RandomStream a(7, 1);
   RandomStream b(7, 2);

@@ -5,14 +5,6 @@
 namespace isolux {
 namespace {
 
-std::uint32_t reverse_bits(std::uint32_t x) {
-  x = (x << 16) | (x >> 16);
-  x = ((x & 0x00FF00FFu) << 8) | ((x & 0xFF00FF00u) >> 8);
-  x = ((x & 0x0F0F0F0Fu) << 4) | ((x & 0xF0F0F0F0u) >> 4);
-  x = ((x & 0x33333333u) << 2) | ((x & 0xCCCCCCCCu) >> 2);
-  return ((x & 0x55555555u) << 1) | ((x & 0xAAAAAAAAu) >> 1);
-}
-
 // A permutation in which a bit depends on the lower bits only (Laine & Karras 2011): seen from the other end, a nested
 // uniform scramble.
 std::uint32_t permute_upwards(std::uint32_t x, std::uint32_t seed) {

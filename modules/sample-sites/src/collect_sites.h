@@ -15,8 +15,7 @@ using UnitSequence = std::function<Vec3(std::uint64_t i)>;
 /// Where every scattering sampler gives up on a site: so many candidates were tried for each one wanted.
 inline constexpr std::uint64_t kCandidatesPerSite = 1024;
 
-/// The number of sites a request asks for; its 0 means `per_texel` for each texel of the active part of
-/// the box.
+/// The number of sites a request asks for; its 0 means `per_texel` for each texel of the active part of the box.
 [[nodiscard]] std::size_t wanted_sites(const SiteRequest& request, const ActiveCells& cells);
 
 /// The first `count` points of the sequence that, placed in the active cells, are sites; fewer where kCandidatesPerSite

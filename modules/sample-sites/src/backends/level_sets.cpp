@@ -8,7 +8,7 @@
 #include <limits>
 #include <optional>
 
-#include "../collect_sites.h"
+#include "collect_sites.h"
 
 namespace isolux {
 namespace {

@@ -3,35 +3,27 @@
 
 #include <cstdint>
 
-#include "../collect_sites.h"
+#include "collect_sites.h"
 
 namespace isolux {
 namespace {
 
-std::uint32_t reversed(std::uint32_t x) {
-  x = (x >> 16) | (x << 16);
-  x = ((x & 0x00FF00FFu) << 8) | ((x & 0xFF00FF00u) >> 8);
-  x = ((x & 0x0F0F0F0Fu) << 4) | ((x & 0xF0F0F0F0u) >> 4);
-  x = ((x & 0x33333333u) << 2) | ((x & 0xCCCCCCCCu) >> 2);
-  return ((x & 0x55555555u) << 1) | ((x & 0xAAAAAAAAu) >> 1);
-}
-
 /// A nested uniform (Owen) scramble by hashing: each bit is flipped by a hash of the bits above it. Burley 2020,
 /// "Practical hash-based Owen scrambling", with the constants of its Laine-Karras permutation.
 std::uint32_t owen_scrambled(std::uint32_t x, std::uint32_t seed) {
-  x = reversed(x);
+  x = reverse_bits(x);
   x += seed;
   x ^= x * 0x6C50B47Cu;
   x ^= x * 0xB82F1E52u;
   x ^= x * 0xC7AFE638u;
   x ^= x * 0x8D22F6E6u;
-  return reversed(x);
+  return reverse_bits(x);
 }
 
 /// The first three dimensions of Sobol's sequence. Its direction numbers are those of the primitive polynomials 1, x +
 /// 1 and x^2 + x + 1 with the initial values of Joe & Kuo 2008.
 std::uint32_t sobol(std::uint32_t i, int dimension) {
-  if (dimension == 0) return reversed(i);
+  if (dimension == 0) return reverse_bits(i);
   std::uint32_t before = 0;  // the direction number before the last, of the third dimension's recurrence
   std::uint32_t direction = 0x80000000u;
   std::uint32_t x = 0;

@@ -1,7 +1,7 @@
 #include <isolux/core/random.h>
 #include <isolux/sample_sites/site_sampler.h>
 
-#include "../collect_sites.h"
+#include "collect_sites.h"
 
 namespace isolux {
 namespace {

@@ -5,7 +5,7 @@
 #include <array>
 #include <cmath>
 
-#include "../collect_sites.h"
+#include "collect_sites.h"
 
 namespace isolux {
 namespace {

@@ -29,6 +29,15 @@ class RandomStream {
   int left_ = 0;
 };
 
+/// The bits of a number in the opposite order: the radical inverse in base 2, in fractions of 2^32.
+[[nodiscard]] constexpr std::uint32_t reverse_bits(std::uint32_t x) {
+  x = x >> 16 | x << 16;
+  x = (x & 0x00FF00FFu) << 8 | (x & 0xFF00FF00u) >> 8;
+  x = (x & 0x0F0F0F0Fu) << 4 | (x & 0xF0F0F0F0u) >> 4;
+  x = (x & 0x33333333u) << 2 | (x & 0xCCCCCCCCu) >> 2;
+  return (x & 0x55555555u) << 1 | (x & 0xAAAAAAAAu) >> 1;
+}
+
 /// A 64-bit value scrambled so that each input bit reaches each output bit (the finaliser of SplitMix64, Steele et al.
 /// 2014).
 [[nodiscard]] std::uint64_t mix_bits(std::uint64_t value);
