@@ -28,8 +28,9 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
   return row.back();
 }
 
+/// The whole text as a number; nothing if it is none.
 template <class Number>
-std::optional<Number> whole_number(std::string_view text) {
+std::optional<Number> number_of(std::string_view text) {
   // from_chars takes no plus sign, but people and programs write one.
   if (text.size() > 1 && text[0] == '+' && text[1] != '-' && text[1] != '+') text.remove_prefix(1);
   Number value{};
@@ -77,7 +78,7 @@ OptionInfo& OptionVisitor::note(std::string_view name, std::string_view type, st
 void OptionVisitor::operator()(std::string_view name, int& variable, const OptionNote& text) {
   const OptionInfo& option = note(name, "int", std::to_string(variable), text);
   if (const std::string* words = given(name)) {
-    const auto value = whole_number<int>(*words);
+    const auto value = number_of<int>(*words);
     if (!value || *value < option.min || *value > option.max) refuse(owner_, option, *words);
     variable = *value;
   }
@@ -86,7 +87,7 @@ void OptionVisitor::operator()(std::string_view name, int& variable, const Optio
 void OptionVisitor::operator()(std::string_view name, double& variable, const OptionNote& text) {
   const OptionInfo& option = note(name, "number", number_text(variable), text);
   if (const std::string* words = given(name)) {
-    const auto value = whole_number<double>(*words);
+    const auto value = number_of<double>(*words);
     if (!value || !std::isfinite(*value) || *value < option.min || *value > option.max) refuse(owner_, option, *words);
     variable = *value;
   }
@@ -139,7 +140,7 @@ std::string nearest_word(std::string_view word, const std::vector<std::string>& 
 }
 
 double parse_number(std::string_view what, std::string_view text) {
-  const auto value = whole_number<double>(text);
+  const auto value = number_of<double>(text);
   if (!value || !std::isfinite(*value))
     throw InvalidInput(fmt::format("{} = '{}': allowed is a finite number", what, text));
   return *value;

@@ -10,11 +10,10 @@ namespace isolux::detail {
 
 namespace {
 constexpr std::size_t kHugePage = std::size_t(2) << 20;
-constexpr std::size_t kLarge = kHugePage;
 }  // namespace
 
 void* allocate_large(std::size_t bytes) {
-  if (bytes < kLarge) return ::operator new(bytes);
+  if (bytes < kHugePage) return ::operator new(bytes);
   void* memory = ::operator new(bytes, std::align_val_t(kHugePage));
 #ifdef __linux__
   // Advice only: where it is refused the memory is as good as any.
@@ -24,7 +23,7 @@ void* allocate_large(std::size_t bytes) {
 }
 
 void free_large(void* memory, std::size_t bytes) noexcept {
-  if (bytes < kLarge)
+  if (bytes < kHugePage)
     ::operator delete(memory);
   else
     ::operator delete(memory, std::align_val_t(kHugePage));

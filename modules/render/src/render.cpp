@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
 #include <utility>
 
 namespace isolux {

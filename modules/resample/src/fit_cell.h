@@ -6,7 +6,7 @@
 
 namespace isolux {
 
-/// Steps of the near-field terms, in mean grid spacings: one and two are as much as reads fast (docs/resampling.md).
+/// Steps of a fit's near-field terms, in mean grid spacings; docs/resampling.md has what fewer and others are worth.
 inline constexpr std::array<double, 4> kNearFieldSteps = {0.5, 1.0, 2.0, 4.0};
 
 /// What a fit says of a texel beside its value.

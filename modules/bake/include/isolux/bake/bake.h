@@ -70,8 +70,7 @@ struct BakeSettings {
   /// (BakeResult::skipped).
   std::uint64_t most_link_bytes = std::uint64_t(4) << 30;
   /// Sites at texels whose light alone is wanted, by paths, are found and lit in so many parts of the isovalues, one
-  /// after the other, so that they need not be held all at once; 0: as many as the sites are
-  /// worth, some 64 at most.
+  /// after the other, so that they need not be held all at once; 0: as many as the sites are worth, some 64 at most.
   int isovalue_parts = 0;
 };
 

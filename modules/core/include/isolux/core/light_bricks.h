@@ -20,8 +20,8 @@ struct LightBricks {
   Index3 pages{0};                   ///< bricks an axis over the whole light; page p begins at texel p * kCells
   std::vector<std::uint32_t> slots;  ///< of each page, x fastest: its brick's number, or kAbsent
   int channels = 1;
-  std::vector<float>
-      values;  ///< brick after brick, each channel fastest, then x, y, z; clamped beyond the light's edge
+  /// Brick after brick, each channel fastest, then x, y, z; clamped beyond the light's edge.
+  std::vector<float> values;
   std::vector<float> slopes;                        ///< the same, or empty
   std::array<std::vector<float>, 3> normal_slopes;  ///< likewise
 

@@ -1,10 +1,11 @@
 #pragma once
 
-#include <concepts>
+#include <cstddef>
 #include <limits>
 #include <map>
 #include <string>
 #include <string_view>
+#include <type_traits>
 #include <utility>
 #include <vector>
 

@@ -7,7 +7,7 @@
 namespace isolux {
 
 namespace detail {
-/// Memory for `bytes` bytes; from 4 MB on aligned to 2 MB and marked for huge pages, where page faults cost an eighth.
+/// Memory for `bytes` bytes; from 2 MB on aligned to 2 MB and marked for huge pages, where page faults cost an eighth.
 [[nodiscard]] void* allocate_large(std::size_t bytes);
 void free_large(void* memory, std::size_t bytes) noexcept;
 }  // namespace detail

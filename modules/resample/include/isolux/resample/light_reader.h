@@ -22,8 +22,8 @@ enum class TexelStorage {
 ///     e = clamp(V + S (h - h0) + B . n + sum over near-field terms of weight (openness - mean), 0, ceiling)
 ///
 /// V, S and B interpolate the textures below trilinearly, h is the isovalue of the point and n its level set's normal
-/// towards lower values; docs/resampling.md derives it. A
-/// plain grid is read trilinearly. Immutable, callable from many threads; the volume must outlive it.
+/// towards lower values; docs/resampling.md derives it. A plain grid is read trilinearly. Immutable, callable from many
+/// threads; the volume must outlive it.
 class LightReader {
  public:
   /// One pass over the grid; where it has near-field terms and TexelLight::kOwn, some tenths of a microsecond a texel

@@ -44,9 +44,8 @@ class Resampler {
   /// Whether samples can be put into a grid part by part: what a sample gives to which texel depends on no other one.
   [[nodiscard]] virtual bool takes_parts() const { return false; }
   /// Puts more samples into `texels`, which begins as unlit_grid() of their channels; no two parts have samples for one
-  /// texel. All parts together, told_by_bytes(), are what resample() makes of all samples. Of the
-  /// sites only positions are looked at, isovalues, normals and variances may be missing. \pre takes_parts() \throw as
-  /// resample()
+  /// texel. All parts together, told_by_bytes(), are what resample() makes of all samples. Of the sites only positions
+  /// are looked at, isovalues, normals and variances may be missing. \pre takes_parts() \throw as resample()
   virtual void add_part(const Volume& volume, const SampleSet& samples, IlluminationGrid& texels, const Run& run) const;
 
   /// Whether what it makes is read with near-field terms (NearFieldTerm), where these help.
