@@ -32,6 +32,7 @@ void report_bake(const BakeResult& result, Session& session) {
   report["rays_a_site"] = {{"least", result.least_rays}, {"most", result.most_rays}};
   report["skipped"] = result.skipped;
   report["skipped"]["searches_for_hits"] = result.counters.proven;
+  report["skipped"]["rays_to_suns"] = result.counters.known;
   if (result.seconds_beyond_time > 0.0) report["seconds_beyond_time"] = result.seconds_beyond_time;
   report["link_bytes"] = result.link_bytes;
   report["texels"] = texels.count();

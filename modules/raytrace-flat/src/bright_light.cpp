@@ -96,7 +96,7 @@ TraceCounters add_bright_light(const Volume& volume, OuterSide outer, const Envi
   const auto rays = std::size_t(settings.rays);
   const BrightBlock of_block(volume, bright, rays, run.seed);
   return wide::trace_blocks(
-      volume, samples.sites, outer, rays, run,
+      volume, samples.sites, {.outer = outer, .rays_per_site = rays}, run,
       [&](const wide::SiteBlock& block, TraceCounters& counters) { of_block.light(block, samples, counters); });
 }
 

@@ -57,7 +57,7 @@ class ScalarTracer final : public FlatTracer {
     samples.channels = is_grey(scene) ? 1 : 3;
     const PathTracer tracer(volume, scene, settings, options_.limits);
     // Differences of neighbouring strata are too large still, as those of `wide`.
-    result.rays = wide::light_and_calibrate(samples, run, [&](SampleSet& some, const Run& own, wide::SiteRays&) {
+    wide::light_and_calibrate(samples, run, [&](SampleSet& some, const Run& own, SiteRays&) {
       light(tracer, settings.rays, own, some, result.counters);
     });
     return result;

@@ -20,7 +20,16 @@ namespace {
 /// Path tracing with many rays at once in the machine's widest vectors, sites sorted by isovalue and place.
 class WideTracer final : public FlatTracer {
  public:
-  using Options = PathOptions;
+  struct Options {
+    PathOptions paths;
+    bool sun_edges = true;
+
+    void describe(OptionVisitor& option) {
+      paths.describe(option);
+      option("sun_edges", sun_edges,
+             {.help = "without reflections: all rays to a sun near the edges of its shadows only, a few elsewhere"});
+    }
+  };
 
   explicit WideTracer(const Options& options) : options_(options) {}
 
@@ -31,15 +40,17 @@ class WideTracer final : public FlatTracer {
     TraceResult result;
     SampleSet& samples = result.samples;
     samples.sites = std::move(sites);
-    result.rays = wide::light_and_calibrate(samples, run, [&](SampleSet& some, const Run& own, wide::SiteRays& rays) {
-      light(volume, scene, settings, own, some, rays, result.counters);
-    });
+    SiteRays found =
+        wide::light_and_calibrate(samples, run, [&](SampleSet& some, const Run& own, SiteRays& rays) {
+          light(volume, scene, settings, own, some, rays, result.counters);
+        });
+    result.rays = std::move(found.sky);
     return result;
   }
 
  private:
   void light(const Volume& volume, const Scene& scene, const TraceSettings& settings, const Run& run,
-             SampleSet& samples, wide::SiteRays& rays, TraceCounters& counters) const {
+             SampleSet& samples, SiteRays& rays, TraceCounters& counters) const {
     samples.channels = is_grey(scene) ? 1 : 3;
     wide::put_darkness(samples, std::size_t(settings.rays));
     if (settings.bounces == 0)
@@ -50,23 +61,39 @@ class WideTracer final : public FlatTracer {
 
   /// What is seen of the sky, suns and other lamps each by what asks least; their sums and variances add up.
   void without_reflections(const Volume& volume, const Scene& scene, const TraceSettings& settings, const Run& run,
-                           SampleSet& samples, wide::SiteRays& rays, TraceCounters& counters) const {
+                           SampleSet& samples, SiteRays& rays, TraceCounters& counters) const {
     Scene lamps = scene;
     std::erase_if(lamps.lights, [](const Light& light) { return std::holds_alternative<SunLight>(light); });
     if (!lamps.lights.empty()) by_paths(volume, lamps_of(lamps), settings, run, samples, nullptr, counters);
     const SceneParts parts(scene);
     if (parts.bright() != nullptr)
       add(counters, add_bright_light(volume, scene.outer, *parts.bright(), settings, run, samples));
-    for (std::size_t i = 0; i < scene.lights.size(); ++i)
-      if (const auto* sun = std::get_if<SunLight>(&scene.lights[i]))
-        add(counters, add_sun_light(volume, scene.outer, *sun, std::uint32_t(i), settings, run, samples));
+    add_suns(volume, scene, settings, run, samples, rays.suns, counters);
     if (tells_apart(scene, settings, parts.bright() != nullptr)) wide::tell_lamps_apart(samples, samples);
-    if (!rays.empty())
-      add(counters, add_sky_light_of(rays, volume, parts.soft(), settings, run, samples));
+    if (!rays.sky.empty())
+      add(counters, add_sky_light_of(rays.sky, volume, parts.soft(), settings, run, samples));
     else if (can_spread(settings))
-      add(counters, add_sky_light_by_noise(volume, parts.soft(), settings, run, samples, rays));
+      add(counters, add_sky_light_by_noise(volume, parts.soft(), settings, run, samples, rays.sky));
     else
       add(counters, add_sky_light(volume, parts.soft(), settings, {.count = settings.rays}, run, samples));
+  }
+
+  void add_suns(const Volume& volume, const Scene& scene, const TraceSettings& settings, const Run& run,
+                SampleSet& samples, std::vector<SunQuestions>& questions, TraceCounters& counters) const {
+    const bool by_edges = options_.sun_edges && can_find_edges(settings);
+    std::size_t suns = 0;
+    for (std::size_t i = 0; i < scene.lights.size(); ++i) {
+      const auto* const sun = std::get_if<SunLight>(&scene.lights[i]);
+      if (sun == nullptr) continue;
+      const auto number = std::uint32_t(i);
+      if (!by_edges) {
+        add(counters, add_sun_light(volume, scene.outer, *sun, number, settings, run, samples));
+        continue;
+      }
+      if (questions.size() == suns) questions.emplace_back();
+      add(counters,
+          add_sun_light_by_edges(volume, scene.outer, *sun, number, settings, run, samples, questions[suns++]));
+    }
   }
 
   void with_reflections(const Volume& volume, const Scene& scene, const TraceSettings& settings, const Run& run,
@@ -87,11 +114,12 @@ class WideTracer final : public FlatTracer {
 
   void by_paths(const Volume& volume, const Scene& scene, const TraceSettings& settings, const Run& run,
                 SampleSet& samples, SampleSet* lamps, TraceCounters& counters) const {
-    const wide::PathWaves waves(volume, scene, settings, options_.limits, run.seed, samples.sites);
-    add(counters, wide::trace_blocks(volume, samples.sites, scene.outer, waves.aimer().rays(), run,
-                                     [&](const wide::SiteBlock& block, TraceCounters& part) {
-                                       waves.light(block, samples, lamps, part);
-                                     }));
+    const wide::PathWaves waves(volume, scene, settings, options_.paths.limits, run.seed, samples.sites);
+    const wide::BlockRequest request{.outer = scene.outer, .rays_per_site = waves.aimer().rays()};
+    add(counters,
+        wide::trace_blocks(volume, samples.sites, request, run, [&](const wide::SiteBlock& block, TraceCounters& part) {
+          waves.light(block, samples, lamps, part);
+        }));
   }
 
   Options options_;

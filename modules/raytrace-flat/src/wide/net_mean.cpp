@@ -145,6 +145,21 @@ void calibrate_variance(SampleSet& samples, std::span<const std::size_t> probes,
 
 std::uint64_t probe_seed(std::uint64_t seed) { return mix_bits(seed ^ 0x9E3779B97F4A7C15ull); }
 
+namespace {
+
+SiteRays of_probes(const SiteRays& rays, std::span<const std::size_t> probes) {
+  SiteRays result;
+  if (!rays.sky.empty())
+    for (const std::size_t probe : probes) result.sky.push_back(rays.sky[probe]);
+  for (const SunQuestions& questions : rays.suns) {
+    SunQuestions& some = result.suns.emplace_back(SunQuestions{.asked = {}, .rays = questions.rays});
+    for (const std::size_t probe : probes) some.asked.push_back(questions.asked[probe]);
+  }
+  return result;
+}
+
+}  // namespace
+
 SiteRays light_and_calibrate(SampleSet& samples, const Run& run, const LightSamples& light) {
   SiteRays rays;
   light(samples, run, rays);
@@ -154,11 +169,9 @@ SiteRays light_and_calibrate(SampleSet& samples, const Run& run, const LightSamp
   Run other = run;
   other.seed = probe_seed(run.seed);
   other.progress = {};
-  SiteRays again_rays;
-  if (!rays.empty())
-    for (const std::size_t probe : probes) again_rays.push_back(rays[probe]);
+  SiteRays again_rays = of_probes(rays, probes);
   light(again, other, again_rays);
-  calibrate_variance(samples, probes, again, rays);
+  calibrate_variance(samples, probes, again, rays.sky);
   return rays;
 }
 

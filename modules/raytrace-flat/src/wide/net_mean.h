@@ -10,6 +10,7 @@
 #include <span>
 #include <vector>
 
+#include "site_rays.h"
 #include "wide/hemisphere.h"
 
 namespace isolux::wide {
@@ -60,14 +61,11 @@ void calibrate_variance(SampleSet& samples, std::span<const std::size_t> probes,
 /// The seed of the second results.
 [[nodiscard]] std::uint64_t probe_seed(std::uint64_t seed);
 
-/// How many rays each site has; empty: all as many.
-using SiteRays = std::vector<std::uint32_t>;
-
 /// What lights samples whose sites are set, by the seed and the progress of a run. It says how many rays sites got, or
 /// takes as many as it is told.
 using LightSamples = std::function<void(SampleSet& samples, const Run& run, SiteRays& rays)>;
 
 /// Lights all samples, and the probes among them once more, to calibrate the variances.
-[[nodiscard]] SiteRays light_and_calibrate(SampleSet& samples, const Run& run, const LightSamples& light);
+SiteRays light_and_calibrate(SampleSet& samples, const Run& run, const LightSamples& light);
 
 }  // namespace isolux::wide

@@ -6,6 +6,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "wide/site_cells.h"
+
 namespace isolux::wide {
 
 /// Which part of a larger net each site's rays are, so that the rays of sites close together are one net as well: means
@@ -26,7 +28,7 @@ class NetPlaces {
   [[nodiscard]] Place of(const Sites& sites, std::size_t site) const;
 
  private:
-  int cube_ = 0;                      ///< cells of 2^cube_ voxels an axis hold a site or so, or as many as crowd_ says
+  SiteCells cells_;
   int crowd_ = 0;                     ///< log2 of how many sites share a cell
   std::vector<std::uint8_t> orders_;  ///< of each site among those of its cell; empty: it has none beside it
 };

@@ -6,9 +6,9 @@
 
 namespace isolux::wide {
 
-TraceCounters trace_blocks(const Volume& volume, const Sites& sites, OuterSide outer, std::size_t rays, const Run& run,
+TraceCounters trace_blocks(const Volume& volume, const Sites& sites, BlockRequest request, const Run& run,
                            const std::function<void(const SiteBlock&, TraceCounters&)>& body) {
-  const BlockRequest request{.outer = outer, .rays_per_site = rays, .sites_per_block = sites_per_batch(rays)};
+  request.sites_per_block = sites_per_batch(request.rays_per_site);
   TraceCounters total;
   std::mutex adding;
   for_each_block(volume, sites, request, run, "trace", [&](const SiteBlock& block) {

@@ -29,14 +29,16 @@ struct TraceSettings {
   RayNets nets = RayNets::kIndependent;  ///< of the first rays; `scalar` keeps them independent
   std::optional<ValueRange> values{};    ///< of the volume, where known: saves `wide` a pass
   LampLight lamps = LampLight::kWithin;  ///< told apart, the whole is the same to the bit; `scalar` leaves it within
-  /// Of those under the sky, without reflections, of interleaved nets, 16 and more. Lamps get theirs of each site;
+  /// Without reflections, of 16 rays and more: of those under the sky of interleaved nets, and of those to suns. Other
+  /// lamps get theirs of each site;
   /// `scalar` spreads evenly.
   RaySpread spread = RaySpread::kEven;
 };
 
 struct TraceResult {
   SampleSet samples;
-  std::vector<std::uint32_t> rays{};  ///< of each site, where their numbers differ; empty: TraceSettings::rays
+  std::vector<std::uint32_t>
+      rays{};  ///< of each site under the sky, where their numbers differ; empty: TraceSettings::rays
   TraceCounters counters;
 };
 

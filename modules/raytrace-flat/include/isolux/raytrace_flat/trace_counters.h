@@ -12,6 +12,7 @@ struct TraceCounters {
   std::uint64_t cells = 0;       ///< tested
   std::uint64_t cubics = 0;      ///< solved
   std::uint64_t proven = 0;      ///< hits told without following the ray: it is seen on the inner side further on
+  std::uint64_t known = 0;       ///< rays to suns that were not traced: those of the sites about told
 };
 
 inline void add(TraceCounters& sum, const TraceCounters& part) {
@@ -21,6 +22,7 @@ inline void add(TraceCounters& sum, const TraceCounters& part) {
   sum.cells += part.cells;
   sum.cubics += part.cubics;
   sum.proven += part.proven;
+  sum.known += part.known;
 }
 
 inline TraceCounters operator-(TraceCounters all, const TraceCounters& part) {
@@ -30,6 +32,7 @@ inline TraceCounters operator-(TraceCounters all, const TraceCounters& part) {
   all.cells -= part.cells;
   all.cubics -= part.cubics;
   all.proven -= part.proven;
+  all.known -= part.known;
   return all;
 }
 

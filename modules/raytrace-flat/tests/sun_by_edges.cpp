@@ -1,0 +1,185 @@
+// Rays to suns near the edges of shadows, and a few elsewhere.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include "cell_sites.h"
+#include "physics_support.h"
+#include "shadow_edges.h"
+#include "wide/site_cells.h"
+
+namespace isolux::test {
+namespace {
+
+constexpr float kBrightness = 2.0f;
+const Settings kAllRays{{"sun_edges", "false"}};
+
+Scene sunny(float diameter_deg) {
+  Scene scene = darkness(0.5f);
+  scene.lights = {SunLight{
+      .direction = {0.2f, 0.1f, 1.0f}, .irradiance = Vec3f(kBrightness), .angular_diameter_deg = diameter_deg}};
+  return scene;
+}
+
+TraceResult in_the_sun(const Volume& volume, const Scene& scene, const TraceSettings& settings,
+                       const Settings& options = {}, std::uint64_t seed = 1, int threads = 0) {
+  std::vector<std::size_t> texel;
+  isolux::Run run;
+  run.seed = seed;
+  run.threads = threads;
+  return tracers()
+      .create("wide", options)
+      ->trace(volume, scene, cell_sites(volume, OuterSide::kLower, texel), settings, run);
+}
+
+double rms_apart(const std::vector<float>& a, const std::vector<float>& b) {
+  double sum = 0.0;
+  for (std::size_t i = 0; i < a.size(); ++i) sum += std::pow(double(a[i]) - double(b[i]), 2.0);
+  return std::sqrt(sum / double(a.size()));
+}
+
+TEST(SunByEdges, IsAsRightFromFewerRays) {
+  for (const Volume& volume : {two_spheres(33), gyroid(33)}) {
+    for (const float diameter : {0.53f, 8.0f}) {
+      const Scene scene = sunny(diameter);
+      const std::vector<float> truth =
+          in_the_sun(volume, scene, {.rays = 4096, .bounces = 0}, kAllRays, 7).samples.radiance;
+      const TraceResult all = in_the_sun(volume, scene, {.rays = 64, .bounces = 0}, kAllRays);
+      const TraceResult some = in_the_sun(volume, scene, {.rays = 64, .bounces = 0});
+      EXPECT_LE(rms_apart(some.samples.radiance, truth), 1.02 * rms_apart(all.samples.radiance, truth)) << diameter;
+      EXPECT_EQ(all.counters.known, 0u);
+      EXPECT_GT(some.counters.known, 0u);
+      EXPECT_LT(double(some.counters.rays), (diameter < 1.0f ? 0.6 : 1.0) * double(all.counters.rays));
+    }
+  }
+}
+
+TEST(SunByEdges, SaysTheNoiseItLeaves) {
+  const Volume volume = gyroid(33);
+  const Scene scene = sunny(8.0f);
+  const std::vector<float> truth =
+      in_the_sun(volume, scene, {.rays = 4096, .bounces = 0}, kAllRays, 7).samples.radiance;
+  for (const RaySpread spread : {RaySpread::kEven, RaySpread::kByNoise}) {
+    double squares = 0.0;
+    double said = 0.0;
+    for (const std::uint64_t seed : {1, 2, 3}) {
+      const SampleSet found = in_the_sun(volume, scene, {.rays = 16, .bounces = 0, .spread = spread}, {}, seed).samples;
+      squares += std::pow(rms_apart(found.radiance, truth), 2.0);
+      for (const float variance : found.variance) said += double(variance) / double(truth.size());
+    }
+    const double ratio = std::sqrt(squares / said);
+    EXPECT_GT(ratio, 1.0 / 1.3);
+    EXPECT_LT(ratio, 1.3);
+  }
+}
+
+TEST(SunByEdges, IsKnownWhereNothingIsInItsWay) {
+  const Volume volume = sphere(33);
+  const Vec3 towards = glm::normalize(Vec3(0.2, 0.1, 1.0));
+  for (const float diameter : {0.0f, 0.53f, 40.0f}) {
+    const SampleSet found = in_the_sun(volume, sunny(diameter), {.rays = 16, .bounces = 0}).samples;
+    for (std::size_t s = 0; s < found.size(); ++s) {
+      const double cosine = glm::dot(Vec3(found.sites.normals[s]), towards);
+      if (cosine < std::sin(double(diameter) * std::numbers::pi / 360.0) + 0.1) continue;
+      EXPECT_NEAR(found.radiance[s], double(kBrightness) * cosine / std::numbers::pi, 2e-7) << diameter;
+      EXPECT_EQ(found.variance[s], 0.0f);
+    }
+  }
+}
+
+TEST(SunByEdges, AsksAPointOnce) {
+  const Volume volume = two_spheres(33);
+  const TraceResult all = in_the_sun(volume, sunny(0.0f), {.rays = 64, .bounces = 0}, kAllRays);
+  const TraceResult once = in_the_sun(volume, sunny(0.0f), {.rays = 64, .bounces = 0});
+  EXPECT_LT(rms_apart(once.samples.radiance, all.samples.radiance), 1e-7);
+  EXPECT_EQ(64 * once.counters.rays, all.counters.rays);
+}
+
+TEST(SunByEdges, AsksMoreThereWhereRaysAreSpread) {
+  const Volume volume = two_spheres(33);
+  const Scene scene = sunny(0.53f);
+  const std::vector<float> truth =
+      in_the_sun(volume, scene, {.rays = 4096, .bounces = 0}, kAllRays, 7).samples.radiance;
+  const TraceResult even = in_the_sun(volume, scene, {.rays = 16, .bounces = 0}, kAllRays);
+  const TraceResult spread = in_the_sun(volume, scene, {.rays = 16, .bounces = 0, .spread = RaySpread::kByNoise});
+  EXPECT_LT(rms_apart(spread.samples.radiance, truth), 0.5 * rms_apart(even.samples.radiance, truth));
+  EXPECT_LE(spread.counters.rays, even.counters.rays);
+}
+
+TEST(SunByEdges, IsTheSameForAnyNumberOfThreads) {
+  const Volume volume = two_spheres(33);
+  const TraceSettings settings{.rays = 16, .bounces = 0, .spread = RaySpread::kByNoise};
+  const TraceResult one = in_the_sun(volume, sunny(8.0f), settings, {}, 1, 1);
+  const TraceResult two = in_the_sun(volume, sunny(8.0f), settings, {}, 1, 2);
+  EXPECT_EQ(one.samples.radiance, two.samples.radiance);
+  EXPECT_EQ(one.samples.variance, two.samples.variance);
+  EXPECT_EQ(one.counters.rays, two.counters.rays);
+}
+
+Sites sites_at_index(const std::vector<Vec3f>& positions) {
+  Sites sites;
+  sites.positions = positions;
+  sites.isovalues.resize(positions.size());
+  sites.normals.resize(positions.size(), Vec3f(0.0f, 0.0f, 1.0f));
+  return sites;
+}
+
+TEST(ShadowEdges, AreWhereSomeSeeTheLampAndSomeDoNot) {
+  // Rows along x of 8x8 sites: all of a slice see the same.
+  using enum LampSeen;
+  const std::vector<LampSeen> row{kAll,  kAll,    kAll,  kNone, kNone, kTurnedAway, kNone,
+                                  kNone, kRising, kNone, kNone, kSome, kNone};
+  const std::vector<bool> near_row{false, false, true, true, false, false, false, false, true, false, true, true, true};
+  std::vector<Vec3f> places;
+  std::vector<LampSeen> seen;
+  std::vector<bool> expected;
+  for (int column = 0; column < 64; ++column) {
+    for (std::size_t x = 0; x < row.size(); ++x) {
+      places.push_back(Vec3f(x, column % 8, column / 8) + 0.5f);
+      seen.push_back(row[x]);
+      expected.push_back(near_row[x]);
+    }
+  }
+  EXPECT_EQ(near_shadow_edges(sites_at_index(places), seen), expected);
+}
+
+TEST(ShadowEdges, MayBeWhereFewSitesTell) {
+  std::vector<Vec3f> places{{100.5f, 100.5f, 100.5f}};
+  for (int i = 0; i < 1000; ++i) places.push_back(Vec3f(i % 10, i / 10 % 10, i / 100) + 0.5f);
+  const std::vector<LampSeen> seen(places.size(), LampSeen::kAll);
+  const std::vector<bool> near = near_shadow_edges(sites_at_index(places), seen);
+  EXPECT_TRUE(near[0]);
+  EXPECT_EQ(std::count(near.begin(), near.end(), true), 1);
+}
+
+TEST(CellBits, AreDilatedToTheCellsAbout) {
+  const wide::SiteCells::Cell end{130, 7, 5};
+  RandomStream random(1, 2);
+  std::vector<wide::SiteCells::Cell> chosen;
+  wide::CellBits bits(end);
+  for (int i = 0; i < 40; ++i) {
+    const auto below = [&](std::uint32_t n) { return std::uint32_t(random.uniform_double() * n); };
+    chosen.push_back({below(end.x), below(end.y), below(end.z)});
+    bits.set(chosen.back());
+  }
+  const wide::CellBits few = bits;
+  bits.dilate();
+  const auto near = [](std::uint32_t a, std::uint32_t b) { return (a > b ? a - b : b - a) <= 1; };
+  for (std::uint32_t z = 0; z < end.z; ++z) {
+    for (std::uint32_t y = 0; y < end.y; ++y) {
+      for (std::uint32_t x = 0; x < end.x; ++x) {
+        const bool is_near = std::any_of(chosen.begin(), chosen.end(), [&](const wide::SiteCells::Cell& cell) {
+          return near(x, cell.x) && near(y, cell.y) && near(z, cell.z);
+        });
+        EXPECT_EQ((bits[{x, y, z}]), is_near) << x << " " << y << " " << z;
+        EXPECT_EQ(few.count_about({x, y, z}) > 0, is_near);
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace isolux::test
