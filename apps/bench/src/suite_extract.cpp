@@ -119,8 +119,8 @@ void accuracy(const SuiteContext& context, SuiteReport& report) {
         const double area_error = std::fabs(measures.area / shape.area - 1.0);
         table.rows.push_back({shape.name, info.name, double(n), double(mesh.n_faces()), 1e3 * seconds.value,
                               geometry.rms_distance, geometry.largest_distance, geometry.rms_angle, area_error,
-                              std::fabs(measures.volume / shape.volume - 1.0), double(measures.euler_number),
-                              shape.euler});
+                              std::fabs(measures.volume.value_or(0.0) / shape.volume - 1.0),
+                              double(measures.euler_number), shape.euler});
         if (double(measures.euler_number) != shape.euler) {
           report.failures.push_back(
               fmt::format("{} of {}^3 by {} has Euler number {}", shape.name, n, info.name, measures.euler_number));

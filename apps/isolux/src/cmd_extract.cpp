@@ -138,7 +138,7 @@ void report_mesh(const IsoMesh& mesh, const ExtractOptions& options, const std::
                  Session& session) {
   const MeshMeasures measures = session.timed("measure", [&] { return measure_mesh(mesh); });
   session.report["area"] = measures.area;
-  session.report["volume"] = measures.volume;
+  session.report["volume"] = measures.volume ? nlohmann::json(*measures.volume) : nlohmann::json();
   session.report["euler_number"] = measures.euler_number;
   session.report["components"] = measures.components;
   session.report["boundary_edges"] = measures.boundary_edges;

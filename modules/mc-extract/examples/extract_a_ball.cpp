@@ -14,7 +14,7 @@ int main() {
   const auto extractor = isolux::extractors().create("marching_cubes");
   const isolux::IsoMesh mesh = extractor->extract(volume, {.isovalue = -10.0f}, {});
   const isolux::MeshMeasures measures = isolux::measure_mesh(mesh);
-  std::printf("%zu triangles, volume %.1f, Euler number %d\n", mesh.n_faces(), measures.volume,
+  std::printf("%zu triangles, volume %.1f, Euler number %d\n", mesh.n_faces(), measures.volume.value(),
               int(measures.euler_number));
 
   isolux::IsoExtractor sweep(volume);  // many isovalues: keeps its index, its buffers and the mesh's memory

@@ -225,15 +225,24 @@ TEST_P(EveryExtractor, CapsEncloseTheInnerVolume) {
   const Volume ramp = sampled(Index3(9), unit_cube(9), [](const Vec3& p) { return p.x; });
   for (const OuterSide outer : {OuterSide::kLower, OuterSide::kHigher}) {
     const MeshMeasures half = measure_mesh(extract(ramp, {.isovalue = 0.45f, .outer = outer, .cap = CapKind::kBox}));
-    EXPECT_NEAR(half.volume, outer == OuterSide::kLower ? 0.55 : 0.45, 1e-6);  // float coordinates
-    EXPECT_NEAR(half.area, 2.0 + 4.0 * half.volume, 1e-5);
+    EXPECT_NEAR(half.volume.value(), outer == OuterSide::kLower ? 0.55 : 0.45, 1e-6);  // float coordinates
+    EXPECT_NEAR(half.area, 2.0 + 4.0 * half.volume.value(), 1e-5);
     EXPECT_EQ(half.euler_number, 2);
     EXPECT_EQ(half.boundary_edges, 0U);
     EXPECT_EQ(half.components, 1U);
   }
   const MeshMeasures all = measure_mesh(extract(ramp, {.isovalue = -1.0f, .cap = CapKind::kBox}));
-  EXPECT_NEAR(all.volume, 1.0, 1e-6);
+  EXPECT_NEAR(all.volume.value(), 1.0, 1e-6);
   EXPECT_EQ(all.euler_number, 2);
+}
+
+TEST_P(EveryExtractor, AnOpenSurfaceEnclosesNoVolume) {
+  const Volume ramp = sampled(Index3(9), unit_cube(9), [](const Vec3& p) { return p.x; });
+  const MeshMeasures open = measure_mesh(extract(ramp, {.isovalue = 0.45f}));
+  EXPECT_GT(open.boundary_edges, 0U);
+  EXPECT_FALSE(open.volume.has_value());
+  EXPECT_NEAR(open.area, 1.0, 1e-5);
+  EXPECT_EQ(measure_mesh(IsoMesh()).volume, 0.0);
 }
 
 TEST_P(EveryExtractor, LeavesOutSmallComponents) {

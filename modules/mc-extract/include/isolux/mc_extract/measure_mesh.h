@@ -4,14 +4,15 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 
 namespace isolux {
 
 /// Figures of a mesh, world units.
 struct MeshMeasures {
   double area = 0.0;
-  /// Enclosed volume, positive where faces look away from it; it means something only if boundary_edges is 0.
-  double volume = 0.0;
+  /// Enclosed volume, positive where faces look away from it; nothing where boundary_edges is not 0.
+  std::optional<double> volume{};
   /// Vertices - edges + faces: 2 for each closed component without holes, less 2 for each handle.
   std::int64_t euler_number = 0;
   std::size_t components = 0;
