@@ -168,7 +168,7 @@ endfunction()
 # Highway compiles a file once for each instruction set by including it again, clang 14 refuses to parse ITK 5.2, and a warning is silenced
 # before any header: such files stay translation units of their own.
 macro(_isolux_keep_special_sources_alone)
-  file(GLOB_RECURSE all_sources CONFIGURE_DEPENDS src/*.cpp)
+  file(GLOB_RECURSE all_sources CONFIGURE_DEPENDS src/*.cpp tests/*.cpp)
   foreach(source IN LISTS all_sources)
     file(STRINGS ${source} is_special REGEX "hwy/foreach_target|include <itk|pragma GCC diagnostic ignored" LIMIT_COUNT 1)
     if(is_special)

@@ -239,9 +239,10 @@ void cap_box(IndexedMesh& mesh, const VolumeView& volume, const LevelSet& level_
 }
 
 void finish_mesh(IndexedMesh& mesh, const VolumeView& volume, const ExtractSettings& settings, const Run& run) {
-  if (settings.cap == CapKind::kBox) cap_box(mesh, volume, LevelSet(volume.lattice(), settings));
+  // Before there is a cap: the rim's normals are of the surface alone.
   if (settings.normals == NormalKind::kFaces) set_face_normals(mesh);
   if (settings.normals == NormalKind::kAccurate) set_accurate_normals(volume, settings.outer, run, mesh);
+  if (settings.cap == CapKind::kBox) cap_box(mesh, volume, LevelSet(volume.lattice(), settings));
   if (settings.min_component > 0) drop_small_components(mesh, settings.min_component);
 }
 

@@ -10,7 +10,7 @@ namespace isolux::mc {
 /// extracted: square by square of the faces, between the mesh's boundary edges there and the corners that are inside.
 void cap_box(IndexedMesh& mesh, const VolumeView& volume, const LevelSet& level_set);
 
-/// What the settings ask of an extracted mesh beyond its surface: the cap, then other normals, then leaving out small
+/// What the settings ask of an extracted mesh beyond its surface: other normals, then the cap, then leaving out small
 /// components. \throw Cancelled
 void finish_mesh(IndexedMesh& mesh, const VolumeView& volume, const ExtractSettings& settings, const Run& run);
 

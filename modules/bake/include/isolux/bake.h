@@ -6,6 +6,7 @@
 #include <isolux/bake/find_sites.h>
 #include <isolux/bake/kept_rays.h>
 #include <isolux/bake/light_metadata.h>
+#include <isolux/bake/light_on_box.h>
 #include <isolux/bake/light_points.h>
 #include <isolux/bake/scene_file.h>
 #include <isolux/bake/stages.h>

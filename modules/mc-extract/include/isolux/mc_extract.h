@@ -3,6 +3,7 @@
 
 #include <isolux/core/error.h>
 #include <isolux/mc_extract/accurate_normals.h>
+#include <isolux/mc_extract/cap_vertices.h>
 #include <isolux/mc_extract/extractor.h>
 #include <isolux/mc_extract/indexed_mesh.h>
 #include <isolux/mc_extract/iso_extractor.h>

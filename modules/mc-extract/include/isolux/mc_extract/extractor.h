@@ -24,7 +24,8 @@ enum class NormalKind : std::uint8_t {
 enum class CapKind : std::uint8_t {
   kNone,  ///< it ends there: boundary edges on the box's faces
   kBox    ///< the inner side's part of the box's faces is added: the mesh encloses what is inside, and is closed.
-          ///< Vertices on the rim belong to both and keep the surface's normal.
+          ///< Vertices on the rim belong to both, or the mesh would not be closed, and have the surface's normal, of
+          ///< whatever kind; the cap's others have the box's (cap_vertices.h).
 };
 
 struct ExtractSettings {
