@@ -4,6 +4,7 @@
 
 #include <bit>
 #include <cstring>
+#include <string>
 #include <vector>
 
 namespace isolux::mc {
@@ -18,8 +19,11 @@ void put(std::vector<char>& bytes, const T& value) {
   std::memcpy(bytes.data() + at, &value, sizeof(T));
 }
 
-/// \throw InvalidInput unless there is one colour a vertex, or none.
-void require_colours_fit(const IsoMesh& mesh, std::span<const Rgb8> colours);
+/// \throw InvalidInput unless there is one colour a vertex, or none, and light likewise.
+void require_fit(const IsoMesh& mesh, std::span<const Rgb8> colours, const MeshExtras& extras);
+
+/// The notes as "key=value", without control characters: lines of a file's header.
+std::vector<std::string> note_lines(const MeshExtras& extras);
 
 /// \throw IoError naming path.
 void write_bytes(const std::vector<char>& bytes, const std::string& path);

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "mesh_bytes.h"
 
@@ -71,6 +72,16 @@ json put_vertices(const IsoMesh& mesh, std::span<const Rgb8> colours, GlbBuffer&
   return attributes;
 }
 
+/// The mesh of one primitive and the node that shows it.
+void put_node(json primitive, const MeshExtras& extras, json& document) {
+  json mesh = {{"primitives", json::array({std::move(primitive)})}};
+  json node = {{"mesh", 0}};
+  if (!extras.name.empty()) mesh["name"] = node["name"] = extras.name;
+  for (const auto& [key, value] : extras.notes) node["extras"][key] = value;
+  document["meshes"] = json::array({std::move(mesh)});
+  document["nodes"] = json::array({std::move(node)});
+}
+
 void put_chunk(std::vector<char>& file, const char* type, std::vector<char> content, char padding) {
   content.resize((content.size() + 3) / 4 * 4, padding);
   mc::put(file, std::uint32_t(content.size()));
@@ -80,8 +91,8 @@ void put_chunk(std::vector<char>& file, const char* type, std::vector<char> cont
 
 }  // namespace
 
-void write_glb(const IsoMesh& mesh, std::span<const Rgb8> colours, const std::string& path) {
-  mc::require_colours_fit(mesh, colours);
+void write_glb(const IsoMesh& mesh, std::span<const Rgb8> colours, const std::string& path, const MeshExtras& extras) {
+  mc::require_fit(mesh, colours, extras);
   const std::size_t estimate = mesh.n_vertices() * 32 + mesh.n_faces() * 12 + 4096;
   if (estimate > std::numeric_limits<std::uint32_t>::max())
     throw InvalidInput(fmt::format("{}: a mesh of {} triangles does not fit the 4 GiB of a .glb file: write .ply", path,
@@ -103,9 +114,7 @@ void write_glb(const IsoMesh& mesh, std::span<const Rgb8> colours, const std::st
       document["extensionsUsed"] = {"KHR_materials_unlit"};
     }
     document["materials"] = json::array({material});
-    document["meshes"] = json::array(
-        {{{"primitives", json::array({{{"attributes", attributes}, {"indices", indices}, {"material", 0}}})}}});
-    document["nodes"] = json::array({{{"mesh", 0}}});
+    put_node({{"attributes", attributes}, {"indices", indices}, {"material", 0}}, extras, document);
     document["bufferViews"] = buffer.views;
     document["accessors"] = buffer.accessors;
     document["buffers"] = json::array({{{"byteLength", buffer.bytes.size()}}});
@@ -114,7 +123,8 @@ void write_glb(const IsoMesh& mesh, std::span<const Rgb8> colours, const std::st
   document["scenes"] = json::array({scene});
   document["scene"] = 0;
 
-  const std::string text = document.dump();
+  // Names may be of files, whose bytes need not be UTF-8.
+  const std::string text = document.dump(-1, ' ', false, json::error_handler_t::replace);
   std::vector<char> chunks;
   put_chunk(chunks, "JSON", {text.begin(), text.end()}, ' ');
   if (!buffer.bytes.empty()) put_chunk(chunks, "BIN\0", std::move(buffer.bytes), '\0');

@@ -6,11 +6,12 @@
 
 namespace isolux {
 
-void write_obj(const IsoMesh& mesh, std::span<const Rgb8> colours, const std::string& path) {
-  mc::require_colours_fit(mesh, colours);
+void write_obj(const IsoMesh& mesh, std::span<const Rgb8> colours, const std::string& path, const MeshExtras& extras) {
+  mc::require_fit(mesh, colours, extras);
   std::vector<char> text;
   const auto out = std::back_inserter(text);
   fmt::format_to(out, "# isolux\n");
+  for (const std::string& line : mc::note_lines(extras)) fmt::format_to(out, "# {}\n", line);
   for (const auto v : mesh.vertices()) {
     // {} of a float gives the fewest digits that read back as the same float.
     const auto& p = mesh.point(v);

@@ -45,6 +45,14 @@ class WriteMesh : public ::testing::Test {
     return mesh;
   }
 
+  /// What a file begins with.
+  static std::string head(const std::string& path) {
+    std::ifstream file(path, std::ios::binary);
+    std::string text(2000, '\0');
+    file.read(text.data(), std::streamsize(text.size()));
+    return text;
+  }
+
   void expect_same(const IsoMesh& other, double tolerance) const {
     ASSERT_EQ(other.n_vertices(), mesh_.n_vertices());
     ASSERT_EQ(other.n_faces(), mesh_.n_faces());
@@ -77,6 +85,45 @@ TEST_F(WriteMesh, PlyComesBackBitByBit) {
   expect_same(read(path("b.ply"), kNormals), 0.0);
   EXPECT_EQ(std::filesystem::file_size(path("a.ply")) - std::filesystem::file_size(path("b.ply")),
             3 * mesh_.n_vertices() + std::strlen("property uchar red\nproperty uchar green\nproperty uchar blue\n"));
+}
+
+TEST_F(WriteMesh, PlyHasTheLightItselfToo) {
+  std::vector<float> light;
+  for (std::size_t v = 0; v < mesh_.n_vertices(); ++v) light.push_back(0.001f * float(v));
+  write_mesh(mesh_, colours_, path("grey.ply"), {.light = light});
+  const std::string grey = head(path("grey.ply"));
+  EXPECT_NE(grey.find("property uchar blue\nproperty float quality\nelement face"), std::string::npos) << grey;
+  const IsoMesh back = read(path("grey.ply"), kNormalsAndColours);
+  expect_same(back, 0.0);
+  expect_same_colours(back, 0);
+  light.resize(3 * mesh_.n_vertices(), 0.5f);
+  write_mesh(mesh_, {}, path("colour.ply"), {.light = light, .light_channels = 3});
+  EXPECT_NE(head(path("colour.ply")).find("property float e_r\nproperty float e_g\nproperty float e_b\n"),
+            std::string::npos);
+  expect_same(read(path("colour.ply"), kNormals), 0.0);
+  EXPECT_THROW(write_mesh(mesh_, {}, path("a.ply"), {.light = light, .light_channels = 2}), InvalidInput);
+  EXPECT_THROW(write_mesh(mesh_, {}, path("a.obj"), {.light = light, .light_channels = 1}), InvalidInput);
+  for (const std::string& extension : mesh_extensions()) {
+    EXPECT_EQ(holds_light("A" + extension), extension == ".ply");
+    EXPECT_EQ(holds_colours("A" + extension), extension != ".stl");
+  }
+}
+
+TEST_F(WriteMesh, NotesAreComments) {
+  const MeshExtras extras{.notes = {{"SPACE", "LPS"}, {"volume", "a\nend_header\xff.nrrd"}}, .name = "a at 5"};
+  for (const std::string extension : {".ply", ".obj", ".glb"}) {
+    write_mesh(mesh_, {}, path("a" + extension), extras);
+    const std::string text = head(path("a" + extension));
+    if (extension == ".glb") {
+      EXPECT_NE(text.find(R"("extras":{"SPACE":"LPS",)"), std::string::npos) << text;
+      EXPECT_NE(text.find(R"("name":"a at 5")"), std::string::npos) << text;
+      continue;
+    }
+    const std::string mark = extension == ".ply" ? "comment " : "# ";
+    EXPECT_NE(text.find("\n" + mark + "SPACE=LPS\n"), std::string::npos) << text;
+    EXPECT_NE(text.find("\n" + mark + "volume=a end_header\xff.nrrd\n"), std::string::npos) << text;
+    expect_same(read(path("a" + extension), kNormals), extension == ".ply" ? 0.0 : 1e-6);
+  }
 }
 
 TEST_F(WriteMesh, ObjComesBack) {
@@ -206,7 +253,8 @@ TEST_F(WriteMesh, MeshLabOpensThem) {
   for (const std::string extension : {".ply", ".off", ".stl"}) {
     const std::string from = path("a" + extension);
     const std::string to = path("from_" + extension.substr(1) + ".ply");
-    write_mesh(mesh_, colours_, from);
+    const std::vector<float> light(mesh_.n_vertices(), 0.25f);
+    write_mesh(mesh_, colours_, from, {.light = light, .notes = {{"SPACE", "LPS"}}});
     const std::string command =
         "timeout 100 xvfb-run -a meshlabserver -i " + from + " -o " + to + " -m vn vc > " + path("log") + " 2>&1";
     ASSERT_EQ(std::system(command.c_str()), 0) << extension;
