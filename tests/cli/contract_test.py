@@ -274,9 +274,12 @@ class StoredTypes(CommandLineTest):
             file = self.write(f"f_8x7x6_{name}.raw", struct.pack(f"<{len(values)}{code}", *values))
             info = json.loads(self.succeed("info", file, "--json").stdout)
             self.assertEqual((info.pop("type"), info.pop("name")), (name, file))
-            self.succeed("extract", file, "--iso", 40.5, "-o", "plain.ply", "--cap")
+            # Under one name, which meshes hold.
+            os.replace(file, self.path("f.raw"))
+            volume = ("f.raw", "--dims", "8x7x6", "--type", name, "--iso", 40.5)
+            self.succeed("extract", *volume, "-o", "plain.ply", "--cap")
             # The light is that of the floats: hashes agree, whatever the type.
-            self.succeed("extract", file, "--iso", 40.5, "-o", "lit.ply", "--light", "light.nrrd")
+            self.succeed("extract", *volume, "-o", "lit.ply", "--light", "light.nrrd")
             files.append((info, self.read("plain.ply"), self.read("lit.ply")))
         for one in files[1:]:
             self.assertEqual(one, files[0])

@@ -119,6 +119,8 @@ class WithoutEffect(CommandLineTest):
         said = "isolux: warning: --scene has no effect"
         self.assertIn(said, self.succeed(*extract, "--light", "light.nrrd").stderr)
         self.assertEqual(self.succeed(*extract, "--light", "light.nrrd", "--exact-light", "--rays", 1).stderr, "")
+        self.assertIn(said, self.succeed(*extract).stderr)
+        self.write("scene.json", '{"outer": "higher"}')
         self.assertEqual(self.succeed(*extract).stderr, "")  # its outer side is the mesh's
 
 

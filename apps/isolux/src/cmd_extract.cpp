@@ -1,87 +1,22 @@
 #include <fmt/format.h>
 #include <isolux/bake/light_metadata.h>
-#include <isolux/bake/light_points.h>
 #include <isolux/core/error.h>
 #include <isolux/mc_extract/measure_mesh.h>
 #include <isolux/mc_extract/vertex_resolution.h>
 #include <isolux/mc_extract/write_mesh.h>
-#include <isolux/render/image.h>
-#include <isolux/resample/light_reader.h>
 #include <isolux/volume_io/atomic_file.h>
 
+#include <filesystem>
 #include <memory>
 
-#include "bake_options.h"
 #include "commands.h"
-#include "light_options.h"
+#include "extract_options.h"
 #include "parse.h"
 #include "usage.h"
-#include "volume_options.h"
+#include "vertex_light.h"
 
 namespace isolux {
 namespace {
-
-struct ExtractOptions {
-  VolumeOptions volume;
-  LightOptions light;
-  SideOption side;
-  TraceOptions trace;
-  float isovalue = 0.0f;
-  std::string output;
-  std::string backend;
-  OuterOption outer;
-  std::vector<std::string> set;
-  bool exact_light = false;
-  bool cap = false;
-  std::size_t min_component = 0;
-  std::string normals = "gradient";
-};
-
-std::vector<Vec3f> positions(const IsoMesh& mesh) {
-  std::vector<Vec3f> points;
-  points.reserve(mesh.n_vertices());
-  for (const auto vertex : mesh.vertices()) {
-    const auto& p = mesh.point(vertex);
-    points.emplace_back(p[0], p[1], p[2]);
-  }
-  return points;
-}
-
-Rgb8 colour(const Vec3f& radiance) { return {srgb_code(radiance.x), srgb_code(radiance.y), srgb_code(radiance.z)}; }
-
-/// Light traced at the vertices, with a baked one as control variate if there is one.
-std::vector<Rgb8> exact_colours(const IsoMesh& mesh, const Volume& volume, const Scene& scene,
-                                const std::optional<LightFile>& baked, const ExtractOptions& options,
-                                Session& session) {
-  const PointLight light = session.timed("trace", [&] {
-    const BackendChoice tracer{options.trace.tracer(), {}};
-    TraceSettings settings = options.trace.settings();
-    if (baked && !options.trace.bounces_given()) settings.bounces = light_bounces(*baked);
-    if (!baked) return light_points(volume, scene, positions(mesh), settings, tracer, session.stages, session.run);
-    const IlluminationGrid& grid = options.light.of_side(*baked, side_towards(*baked, scene.outer));
-    const LightReader reader(volume, grid, TexelStorage::kBricks, session.run);
-    return light_points(volume, scene, positions(mesh), settings, tracer, session.stages, session.run, reader);
-  });
-  session.report["rays"] = light.counters.rays;
-  session.report["rmse_estimate"] = light.rmse_estimate;
-  const SurfaceColour surface = surface_colour(scene, options.isovalue);
-  std::vector<Rgb8> colours;
-  for (const Vec3f& e : light.radiance) colours.push_back(colour(surface.shown(e)));
-  return colours;
-}
-
-std::vector<Rgb8> baked_colours(const IsoMesh& mesh, const Volume& volume, const LightFile& light, OuterSide outer,
-                                const ExtractOptions& options, const Run& run) {
-  const float isovalue = options.isovalue;
-  const IlluminationGrid& grid = options.light.of_side(light, side_towards(light, outer));
-  const LightReader reader(volume, grid, TexelStorage::kBricks, run);
-  const SurfaceColour surface = surface_colour(light, isovalue);
-  std::vector<Rgb8> colours;
-  for (const Vec3f& p : positions(mesh)) {
-    colours.push_back(colour(surface.shown(reader.at_index(volume.lattice().frame.index(Vec3(p)), double(isovalue)))));
-  }
-  return colours;
-}
 
 NormalKind normal_kind(const std::string& name) {
   if (name == "faces") return NormalKind::kFaces;
@@ -131,6 +66,7 @@ nlohmann::json mesh_settings(const ExtractOptions& options, const std::string& b
                            {"exact_light", options.exact_light}};
   if (options.light.given()) result["light"] = options.light.path();
   if (options.exact_light) result["rays"] = options.trace.settings().rays;
+  if (options.exposure) result["exposure"] = *options.exposure;
   return result;
 }
 
@@ -159,16 +95,59 @@ void warn_coarse(const Lattice& lattice, const Session& session) {
                   places));
 }
 
+/// Words that change nothing.
+void warn_of_no_effect(const ExtractOptions& options, const std::optional<LightFile>& light, const Scene& scene,
+                       const Session& session) {
+  options.light.warn_of_no_effect(session);
+  const bool is_shown = options.is_lit() && holds_colours(options.output);
+  if (options.is_lit() && !is_shown)
+    session.warn(fmt::format("{}: {} files have no colours: {} has no effect but for the side that is outside",
+                             options.output, std::filesystem::path(options.output).extension().string(),
+                             options.light.given() ? "--light" : "--exact-light"));
+  if (!options.exact_light && options.trace.says_how_to_trace())
+    session.warn("--bounces, --quality, --rays and --tracer have no effect without --exact-light");
+  const bool is_of_cap = light && options.cap && !light_scene(*light);
+  if (light && !options.exact_light && options.trace.scene_given() && !is_of_cap)
+    session.warn("--scene has no effect with --light unless --exact-light is given");
+  if (!options.is_lit() && options.trace.scene_given() && scene.outer == Scene{}.outer)
+    session.warn("--scene has no effect without --exact-light, but for its outer side");
+  if (options.exposure && !is_shown) session.warn("--exposure has no effect without colours");
+  if (options.light_values && !(is_shown && holds_light(options.output)))
+    session.warn("--light-values has no effect without light, or in other files than .ply");
+}
+
+VertexLight light_of(const IsoMesh& mesh, const Volume& volume, Scene scene, const std::optional<LightFile>& light,
+                     OuterSide outer, const ExtractOptions& options, Session& session) {
+  if (light && !options.exact_light) warn_outside_light(*light, options.isovalue, session);
+  if (light && options.exact_light && !light->grid.detail.covers(double(options.isovalue)))
+    session.warn(fmt::format("isovalue {} lies outside the range that the light is of: it is no help to --exact-light",
+                             options.isovalue));
+  scene.outer = outer;
+  scene.sides = LitSides::kOuter;
+  return vertex_light(mesh, volume, scene, light, outer, options, session);
+}
+
+/// What the file says of where it comes from.
+MeshExtras notes_of(const VolumeView& volume, const VertexLight& light, const ExtractOptions& options) {
+  MeshExtras extras;
+  const std::string source = std::filesystem::path(volume.name()).filename().string();
+  extras.name = fmt::format("{} at {}", source, options.isovalue);
+  extras.notes = {{"volume", source}, {"isovalue", fmt::format("{}", options.isovalue)}};
+  // As 3D Slicer has it; other spaces have no short name.
+  if (volume.space() == "left-posterior-superior") extras.notes.emplace_back("SPACE", "LPS");
+  if (light.e.empty()) return extras;
+  const Vec3f& albedo = light.surface.albedo;
+  extras.notes.emplace_back("albedo", fmt::format("{} {} {}", albedo.x, albedo.y, albedo.z));
+  extras.notes.emplace_back("exposure", fmt::format("{}", options.exposure.value_or(0.0)));
+  return extras;
+}
+
 void extract(const Subject& subject, const BackendChoice& choice, const ExtractOptions& options, Session& session) {
   const VolumeView& volume = subject.volume;
   std::optional<LightFile> light;
   if (options.light.given()) light = options.light.read(*subject.floats, session);
   const Scene scene = scene_for(options, light);
-  options.light.warn_of_no_effect(session);
-  if (!options.exact_light && options.trace.says_how_to_trace())
-    session.warn("--bounces, --quality, --rays and --tracer have no effect without --exact-light");
-  if (!options.exact_light && light && options.trace.scene_given())
-    session.warn("--scene has no effect with --light unless --exact-light is given");
+  warn_of_no_effect(options, light, scene, session);
 
   const OuterSide outer = facing(options, light ? light_outer(*light) : scene.outer);
   const auto extractor = session.stages.extractors.create(choice.name, choice.settings);
@@ -184,19 +163,17 @@ void extract(const Subject& subject, const BackendChoice& choice, const ExtractO
   // A cap closes the whole box where all of it is inside.
   if (!options.cap || mesh.n_faces() == 0) warn_outside_range(volume, options.isovalue, session);
   warn_coarse(volume.lattice(), session);
-  std::vector<Rgb8> colours;
-  if (options.exact_light) {
-    Scene traced = scene;
-    traced.outer = outer;
-    traced.sides = LitSides::kOuter;
-    colours = exact_colours(mesh, *subject.floats, traced, light, options, session);
-  } else if (light) {
-    warn_outside_light(*light, options.isovalue, session);
-    colours = session.timed("light",
-                            [&] { return baked_colours(mesh, *subject.floats, *light, outer, options, session.run); });
-  }
+  VertexLight shown;
+  if (options.is_lit() && holds_colours(options.output))
+    shown = light_of(mesh, *subject.floats, scene, light, outer, options, session);
+  const std::vector<Rgb8> colours = shown_colours(shown, options.exposure.value_or(0.0), session);
+  MeshExtras extras = notes_of(volume, shown, options);
+  std::vector<float> values;
+  if (options.light_values && holds_light(options.output)) values = light_values(shown);
+  extras.light = values;
+  extras.light_channels = shown.channels;
   session.timed("write", [&] {
-    write_atomically_by_name(options.output, [&](const std::string& path) { write_mesh(mesh, colours, path); });
+    write_atomically_by_name(options.output, [&](const std::string& path) { write_mesh(mesh, colours, path, extras); });
   });
   // What is called outside, whichever side is shown.
   const OuterSide outside = options.side.or_outer() == LevelSetSide::kInner ? opposite(outer) : outer;
@@ -209,10 +186,9 @@ void run_extract(const ExtractOptions& options, Session& session) {
   apply_settings("--set", options.set, {{"extractor", &choice.settings}});
   require_choice(session.stages.extractors, choice);
   require_choice(session.stages.tracers, {options.trace.tracer(), {}});
-  const bool lit = options.light.given() || options.exact_light;
-  if (options.side.given() && !lit)
+  if (options.side.given() && !options.is_lit())
     throw UsageError("--side: it chooses whose light; give --light LIGHT.nrrd or --exact-light");
-  if (lit) {
+  if (options.is_lit()) {
     const Volume volume = options.volume.read(session);
     extract({.volume = volume, .floats = &volume}, choice, options, session);
   } else {
@@ -241,7 +217,13 @@ void add_extract_command(CLI::App& program, Session& session) {
   options->trace.add_to(command, session);
   options->outer.add_to(command,
                         "the side that is outside: lower or higher values (default: what the light or scene says)");
-  command.add_flag("--cap", options->cap, "close the surface where it meets the box");
+  command.add_option("--exposure", options->exposure, "stops by which the colours are made brighter")
+      ->check(finite_number())
+      ->type_name("STOPS");
+  command.add_flag("--light-values", options->light_values,
+                   "the light itself, e, as float properties of a .ply file: quality, or e_r, e_g and e_b");
+  command.add_flag("--cap", options->cap,
+                   "close the surface where it meets the box; in light, the cap has that of the box's faces");
   command.add_option("--min-component", options->min_component, "leave out connected parts of fewer triangles")
       ->transform(whole_number(0, std::uint64_t(1) << 32))
       ->type_name("N");

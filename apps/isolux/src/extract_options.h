@@ -1,0 +1,35 @@
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "bake_options.h"
+#include "light_options.h"
+#include "volume_options.h"
+
+namespace isolux {
+
+/// The command line of `isolux extract`.
+struct ExtractOptions {
+  VolumeOptions volume;
+  LightOptions light;
+  SideOption side;
+  TraceOptions trace;
+  float isovalue = 0.0f;
+  std::string output;
+  std::string backend;
+  OuterOption outer;
+  std::vector<std::string> set;
+  bool exact_light = false;
+  std::optional<double> exposure;
+  bool light_values = false;
+  bool cap = false;
+  std::size_t min_component = 0;
+  std::string normals = "gradient";
+
+  [[nodiscard]] bool is_lit() const { return light.given() || exact_light; }
+};
+
+}  // namespace isolux
