@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 #include <isolux/bake/light_metadata.h>
 #include <isolux/core/error.h>
+#include <isolux/mc_extract/iso_extractor.h>
 #include <isolux/render/render.h>
 #include <isolux/resample/light_reader.h>
 #include <isolux/volume_io/atomic_file.h>
@@ -36,6 +37,11 @@ struct RenderOptions {
   std::string size = "800x600";
   std::string view = "30,20";
   std::string eye;
+  std::string up = "0,0,1";
+  std::string projection = "perspective";
+  std::string frame = "box";
+  double zoom = 1.0;
+  std::string background;
   std::string mode;
   int samples = 3;
   std::optional<double> exposure;
@@ -72,26 +78,74 @@ Shader baked_shader(const Volume& volume, const LightFile& light, const RenderOp
   return global_shader(std::move(first), std::move(second), colour);
 }
 
-/// At the middle of the box from outside, or out of --eye.
-Camera camera_of(const RenderOptions& options, const Lattice& volume, double aspect) {
-  const auto view = parse_numbers("--view", options.view, 2);
-  Camera camera = orbit_camera(volume, view[0], view[1], aspect);
-  if (options.eye.empty()) return camera;
-  const auto eye = parse_numbers("--eye", options.eye, 3);
-  camera.eye = {eye[0], eye[1], eye[2]};
-  camera.half_height = kHalfHeightFromWithin;
+View view_of(const RenderOptions& options) {
+  const auto turn = parse_numbers("--view", options.view, 2);
+  const auto up = parse_numbers("--up", options.up, 3);
+  if (up[0] == 0.0 && up[1] == 0.0 && up[2] == 0.0)
+    throw UsageError(fmt::format("--up = '{}': allowed is a direction, such as 0,1,0", options.up));
+  return {.azimuth_deg = turn[0],
+          .elevation_deg = turn[1],
+          .up = {up[0], up[1], up[2]},
+          .projection = options.projection == "orthographic" ? Projection::kOrthographic : Projection::kPerspective};
+}
+
+/// At the surface, where --frame asks for it and there is one, or at the middle of the box.
+Camera outer_camera(const RenderOptions& options, const Volume& volume, const View& view, double aspect,
+                    const Session& session) {
+  if (options.frame == "surface") {
+    IndexedMesh mesh;
+    IsoExtractor(volume, session.run, IsoExtractor::Index::kNone)
+        .extract({.isovalue = options.isovalue}, session.run, mesh);
+    if (!mesh.positions.empty()) return framing_camera(mesh.positions, view, aspect);
+  }
+  return orbit_camera(volume.lattice(), view, aspect);
+}
+
+/// From outside, or out of --eye.
+Camera camera_of(const RenderOptions& options, const Volume& volume, double aspect, const Session& session) {
+  const View view = view_of(options);
+  Camera camera;
+  if (options.eye.empty()) {
+    camera = outer_camera(options, volume, view, aspect, session);
+  } else {
+    camera = orbit_camera(volume.lattice(), view, aspect);
+    const auto eye = parse_numbers("--eye", options.eye, 3);
+    camera.eye = {eye[0], eye[1], eye[2]};
+    camera.half_height = kHalfHeightFromWithin;
+  }
+  camera.half_height /= options.zoom;
   return camera;
+}
+
+/// As linear radiance; nothing for a transparent one. \throw UsageError
+std::optional<Vec3f> background_of(const RenderOptions& options) {
+  if (options.background.empty()) return RenderSettings{}.background;
+  if (options.background == "transparent") return std::nullopt;
+  const std::string wrong =
+      fmt::format("--background = '{}': allowed are transparent, or R,G,B from 0 to 255", options.background);
+  Vec3f colour(0.0f);
+  try {
+    const auto codes = parse_numbers("--background", options.background, 3);
+    for (int c = 0; c < 3; ++c) {
+      const double code = codes[std::size_t(c)];
+      if (!(code >= 0.0 && code <= 255.0) || code != std::floor(code)) throw UsageError(wrong);
+      colour[c] = linear_value(std::uint8_t(code));
+    }
+  } catch (const UsageError&) {
+    throw UsageError(wrong);
+  }
+  return colour;
 }
 
 /// \throw UsageError before any work is done for a picture that cannot be written. Without an extension it may be a
 /// pipe.
-void require_png(const std::string& path, int width, int height) {
+void require_png(const std::string& path, int width, int height, int channels) {
   std::string extension = std::filesystem::path(path).extension().string();
   for (char& c : extension) c = char(std::tolower(static_cast<unsigned char>(c)));
   if (!extension.empty() && extension != ".png")
     throw UsageError(fmt::format("--output: {}: pictures are written as .png", path));
   try {
-    require_png_size(width, height);
+    require_png_size(width, height, channels);
   } catch (const InvalidInput& error) {
     throw UsageError(fmt::format("--size: {}", error.what()));
   }
@@ -101,6 +155,7 @@ void warn_of_no_effect(const RenderOptions& options, const std::string& mode, co
   options.light.warn_of_no_effect(session);
   if (options.exposure && mode != "global" && mode != "both")
     session.warn(fmt::format("--exposure has no effect with --mode {}: it is of global light", mode));
+  if (!options.eye.empty() && options.frame != "box") session.warn("--frame has no effect with --eye");
   if (mode == "normal" && options.light.given() && !options.side.given())
     session.warn("--light has no effect with --mode normal");
 }
@@ -114,6 +169,12 @@ nlohmann::json picture_settings(const RenderOptions& options, const RenderSettin
                            {"outer", name_of(settings.outer)},
                            {"exposure", options.exposure.value_or(0.0)}};
   if (!options.eye.empty()) result["eye"] = parse_numbers("--eye", options.eye, 3);
+  const RenderOptions usual;
+  if (options.up != usual.up) result["up"] = parse_numbers("--up", options.up, 3);
+  if (options.projection != usual.projection) result["projection"] = options.projection;
+  if (options.frame != usual.frame) result["frame"] = options.frame;
+  if (options.zoom != usual.zoom) result["zoom"] = options.zoom;
+  if (options.background != usual.background) result["background"] = options.background;
   if (options.light.given()) result["light"] = options.light.path();
   if (options.side.given()) result["side"] = options.side.name();
   return result;
@@ -121,14 +182,17 @@ nlohmann::json picture_settings(const RenderOptions& options, const RenderSettin
 
 void run_render(const RenderOptions& options, Session& session) {
   const auto [width, height] = parse_size2("--size", options.size);
-  static_cast<void>(parse_numbers("--view", options.view, 2));
+  if (view_of(options).projection == Projection::kOrthographic && !options.eye.empty())
+    throw UsageError("--projection orthographic: --eye looks in perspective; give one of them");
+  const std::optional<Vec3f> background = background_of(options);
+  const int channels = background ? 3 : 4;
   if (!options.eye.empty()) static_cast<void>(parse_numbers("--eye", options.eye, 3));
   const std::string mode = !options.mode.empty() ? options.mode : options.light.given() ? "global" : "local";
   if ((mode == "global" || mode == "both") && !options.light.given()) {
     throw UsageError("--mode " + mode + ": it shows a light; give --light LIGHT.nrrd");
   }
-  require_png(options.output, width, height);
-  if (mode == "both") require_png(options.output, 2 * width + kGap, height);
+  require_png(options.output, width, height, channels);
+  if (mode == "both") require_png(options.output, 2 * width + kGap, height, channels);
   warn_of_no_effect(options, mode, session);
   const Volume volume = options.volume.read(session);
   std::optional<LightFile> light;
@@ -142,7 +206,9 @@ void run_render(const RenderOptions& options, Session& session) {
   settings.outer = light ? light_outer(*light) : OuterSide::kLower;
   settings.outer = options.outer.or_else(settings.outer);
   settings.only = options.side.given();
-  const Camera camera = camera_of(options, volume.lattice(), double(width) / height);
+  settings.background = background;
+  const Camera camera =
+      session.timed("frame", [&] { return camera_of(options, volume, double(width) / height, session); });
   const auto draw = [&](const Shader& shader) { return render(volume, camera, settings, shader, session.run); };
   Image image = session.timed("render", [&]() -> Image {
     if (mode == "normal") return draw(normal_shader());
@@ -155,6 +221,24 @@ void run_render(const RenderOptions& options, Session& session) {
     write_atomically_by_name(options.output, [&](const std::string& path) { write_png(image, path); });
   });
   session.report["settings"] = picture_settings(options, settings, mode);
+}
+
+void add_framing_options(CLI::App& command, RenderOptions& options) {
+  command.add_option("--up", options.up, "the direction of the world that is up (default 0,0,1)")->type_name("X,Y,Z");
+  command
+      .add_option("--projection", options.projection,
+                  "perspective (default), or orthographic: lengths across the view keep their ratio")
+      ->check(CLI::IsMember({"perspective", "orthographic"}));
+  command
+      .add_option("--frame", options.frame, "what fills the picture: the volume's box (default), or the surface alone")
+      ->check(CLI::IsMember({"box", "surface"}));
+  command.add_option("--zoom", options.zoom, "enlarges the picture about its middle (default 1)")
+      ->check(above_zero())
+      ->type_name("FACTOR");
+  command
+      .add_option("--background", options.background,
+                  "transparent, or a colour as screens show it, each from 0 to 255 (default 124,124,124)")
+      ->type_name("R,G,B");
 }
 
 }  // namespace
@@ -178,6 +262,7 @@ void add_render_command(CLI::App& program, Session& session) {
       ->type_name("AZIMUTH,ELEVATION");
   command.add_option("--eye", options->eye, "look from this place of the world, in the direction of --view")
       ->type_name("X,Y,Z");
+  add_framing_options(command, *options);
   command
       .add_option("--mode", options->mode,
                   "global: the baked light (default with --light); local: a headlight; both: side by side; "

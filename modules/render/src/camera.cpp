@@ -1,35 +1,114 @@
+#include <fmt/format.h>
+#include <isolux/core/error.h>
 #include <isolux/render/camera.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <glm/trigonometric.hpp>
+#include <limits>
 
 namespace isolux {
+namespace {
+
+/// A camera turned as the view says, its eye in the world's origin.
+Camera turned_camera(const View& view) {
+  const double length = glm::length(view.up);
+  if (!(length > 0.0) || !std::isfinite(length))
+    throw InvalidInput(fmt::format("up = ({}, {}, {}): allowed is a direction", view.up.x, view.up.y, view.up.z));
+  const Vec3 up = view.up / length;
+  constexpr double kAlong = 1e-6;  // sine of the angle below which x is taken for up itself
+  const Vec3 x(1.0, 0.0, 0.0);
+  const Vec3 y(0.0, 1.0, 0.0);
+  const Vec3 side = glm::length(glm::cross(up, x)) > kAlong ? x : y;
+  const Vec3 across = glm::normalize(side - glm::dot(side, up) * up);
+  const Vec3 ahead = glm::cross(up, across);
+  const double azimuth = glm::radians(view.azimuth_deg);
+  const double elevation = glm::radians(view.elevation_deg);
+  Camera camera;
+  camera.projection = view.projection;
+  camera.right = std::cos(azimuth) * across + std::sin(azimuth) * ahead;
+  const Vec3 level = -std::sin(azimuth) * across + std::cos(azimuth) * ahead;
+  camera.forward = std::cos(elevation) * level - std::sin(elevation) * up;
+  camera.up = glm::cross(camera.right, camera.forward);
+  return camera;
+}
+
+/// Across one direction of the picture: between which places the middle of all views that hold the points may be. The
+/// less the eye is moved back, the further they are apart.
+struct Reach {
+  double low = std::numeric_limits<double>::infinity();
+  double high = -std::numeric_limits<double>::infinity();
+
+  /// A point `place` to the side and at `depth`, for a view half as wide as `half` times its depth.
+  void add(double place, double depth, double half) {
+    low = std::min(low, place + half * depth);
+    high = std::max(high, place - half * depth);
+  }
+  [[nodiscard]] double middle() const { return 0.5 * (low + high); }
+  [[nodiscard]] double half_width() const { return 0.5 * (high - low); }
+};
+
+}  // namespace
 
 Vec3 Camera::direction(double x, double y) const {
+  if (projection == Projection::kOrthographic) return forward;
   return glm::normalize(forward + half_height * (x * right + y * up));
 }
 
-Camera orbit_camera(const Lattice& volume, double azimuth_deg, double elevation_deg, double aspect) {
+Vec3 Camera::origin(double x, double y) const {
+  if (projection == Projection::kPerspective) return eye;
+  return eye + half_height * (x * right + y * up);
+}
+
+Camera orbit_camera(const Lattice& volume, const View& view, double aspect) {
   const Vec3 last(volume.size - 1);
   const Vec3 middle = volume.frame.world(0.5 * last);
-  const double azimuth = glm::radians(azimuth_deg);
-  const double elevation = glm::radians(elevation_deg);
-  Camera camera;
-  camera.right = {std::cos(azimuth), std::sin(azimuth), 0.0};
-  const Vec3 level(-std::sin(azimuth), std::cos(azimuth), 0.0);
-  camera.forward = std::cos(elevation) * level - Vec3(0.0, 0.0, std::sin(elevation));
-  camera.up = glm::cross(camera.right, camera.forward);
+  Camera camera = turned_camera(view);
+  const bool is_parallel = view.projection == Projection::kOrthographic;
   // The nearest eye that has every corner of the box within the picture.
   double distance = 0.0;
+  double half = 0.0;
   for (int corner = 0; corner < 8; ++corner) {
     const Vec3 index((corner & 1) * last.x, (corner >> 1 & 1) * last.y, (corner >> 2) * last.z);
     const Vec3 p = volume.frame.world(index) - middle;
     const double across = std::max(std::fabs(glm::dot(p, camera.right)) / aspect, std::fabs(glm::dot(p, camera.up)));
-    distance = std::max(distance, across / camera.half_height - glm::dot(p, camera.forward));
+    half = std::max(half, across);
+    distance = std::max(distance, (is_parallel ? 0.0 : across / camera.half_height) - glm::dot(p, camera.forward));
   }
+  if (is_parallel) camera.half_height = half;
   camera.eye = middle - camera.forward * distance;
+  return camera;
+}
+
+Camera orbit_camera(const Lattice& volume, double azimuth_deg, double elevation_deg, double aspect) {
+  return orbit_camera(volume, View{.azimuth_deg = azimuth_deg, .elevation_deg = elevation_deg}, aspect);
+}
+
+Camera framing_camera(std::span<const Vec3f> points, const View& view, double aspect) {
+  if (points.empty()) throw InvalidInput("a camera that frames points: there are none");
+  constexpr double kInner = 0.98;  // of the picture's width and height
+  Camera camera = turned_camera(view);
+  const bool is_parallel = view.projection == Projection::kOrthographic;
+  const double half = is_parallel ? 0.0 : kInner * camera.half_height;
+  // A point at depth f is in view of an eye at depth -d, c to the side, if |place - c| <= half (f + d): both ends of
+  // all these intervals are met by the smallest d with c in the middle.
+  const Vec3 origin(points.front());
+  Reach across;
+  Reach upwards;
+  double nearest = std::numeric_limits<double>::infinity();
+  for (const Vec3f& point : points) {
+    const Vec3 p = Vec3(point) - origin;
+    const double depth = glm::dot(p, camera.forward);
+    across.add(glm::dot(p, camera.right), depth, half * aspect);
+    upwards.add(glm::dot(p, camera.up), depth, half);
+    nearest = std::min(nearest, depth);
+  }
+  const double wanted = std::max(across.half_width() / aspect, upwards.half_width());
+  const double distance = is_parallel ? wanted - nearest : wanted / half;
+  if (is_parallel) camera.half_height = wanted / kInner;
+  camera.eye = origin + across.middle() * camera.right + upwards.middle() * camera.up - distance * camera.forward;
   return camera;
 }
 

@@ -19,32 +19,51 @@ std::uint8_t srgb_code(float linear) {
   return std::uint8_t(std::lround(encoded * 255.0f));
 }
 
-void require_png_size(int width, int height) {
-  // Where stb counts bytes in an int that it doubles.
-  constexpr double kMostBytes = 1 << 30;
-  if ((3.0 * width + 1.0) * height > kMostBytes)
-    throw InvalidInput(
-        fmt::format("a picture of {}x{} pixels: allowed are {:.0f} million in all", width, height, kMostBytes / 3e6));
+float linear_value(std::uint8_t code) {
+  const float v = float(code) / 255.0f;
+  return v <= 0.04045f ? v / 12.92f : std::pow((v + 0.055f) / 1.055f, 2.4f);
 }
 
+void require_png_size(int width, int height, int channels) {
+  // Where stb counts bytes in an int that it doubles.
+  constexpr double kMostBytes = 1 << 30;
+  if ((double(channels) * width + 1.0) * height > kMostBytes)
+    throw InvalidInput(fmt::format("a picture of {}x{} pixels: allowed are {:.0f} million in all", width, height,
+                                   kMostBytes / (1e6 * channels)));
+}
+
+namespace {
+
+/// \throw InvalidInput
+void require_pixels(const Image& image, const std::string& path) {
+  const std::size_t pixels = image.pixels.size();
+  const bool is_whole = image.width >= 1 && image.height >= 1 &&
+                        pixels == std::size_t(image.width) * std::size_t(image.height) &&
+                        (image.coverage.empty() || image.coverage.size() == pixels);
+  if (!is_whole)
+    throw InvalidInput(fmt::format("{}: {} pixels, {} with coverage, for a picture of {}x{}", path, pixels,
+                                   image.coverage.size(), image.width, image.height));
+}
+
+}  // namespace
+
 void write_png(const Image& image, const std::string& path) {
-  require_png_size(image.width, image.height);
-  if (image.width < 1 || image.height < 1 ||
-      image.pixels.size() != std::size_t(image.width) * std::size_t(image.height))
-    throw InvalidInput(
-        fmt::format("{}: {} pixels for a picture of {}x{}", path, image.pixels.size(), image.width, image.height));
+  const int channels = image.coverage.empty() ? 3 : 4;
+  require_png_size(image.width, image.height, channels);
+  require_pixels(image, path);
   std::vector<std::uint8_t> bytes;
-  bytes.reserve(image.pixels.size() * 3);
-  for (const Vec3f& p : image.pixels) {
-    for (int c = 0; c < 3; ++c) bytes.push_back(srgb_code(p[c]));
+  bytes.reserve(image.pixels.size() * std::size_t(channels));
+  for (std::size_t i = 0; i < image.pixels.size(); ++i) {
+    for (int c = 0; c < 3; ++c) bytes.push_back(srgb_code(image.pixels[i][c]));
+    if (channels == 4) bytes.push_back(std::uint8_t(std::lround(255.0f * std::clamp(image.coverage[i], 0.0f, 1.0f))));
   }
   // By way of memory: stb's own files do not notice a full disk.
   std::string png;
   const auto append = [](void* context, void* data, int size) {
     static_cast<std::string*>(context)->append(static_cast<const char*>(data), std::size_t(size));
   };
-  const bool made =
-      stbi_write_png_to_func(append, &png, image.width, image.height, 3, bytes.data(), image.width * 3) != 0;
+  const bool made = stbi_write_png_to_func(append, &png, image.width, image.height, channels, bytes.data(),
+                                           image.width * channels) != 0;
   if (!made) throw std::bad_alloc();  // all else was checked
   errno = 0;
   std::ofstream file(path, std::ios::binary);
@@ -53,11 +72,29 @@ void write_png(const Image& image, const std::string& path) {
   if (!file) throw IoError(fmt::format("{}: writing failed: {}", path, reason_of(errno)));
 }
 
+namespace {
+
+/// Copies a picture into a larger one, its left edge at column `at`.
+void put(const Image& from, int at, Image& into) {
+  for (int y = 0; y < from.height; ++y) {
+    std::copy_n(&from.at(0, y), from.width, &into.at(at, y));
+    if (into.coverage.empty()) continue;
+    float* const row = &into.coverage[into.offset(at, y)];
+    if (from.coverage.empty())
+      std::fill_n(row, from.width, 1.0f);
+    else
+      std::copy_n(&from.coverage[from.offset(0, y)], from.width, row);
+  }
+}
+
+}  // namespace
+
 Image side_by_side(const Image& left, const Image& right, int gap, const Vec3f& colour) {
   if (gap < 0) throw InvalidInput(fmt::format("a gap of {} pixels: allowed is 0 and more", gap));
   Image both(left.width + gap + right.width, std::max(left.height, right.height), colour);
-  for (int y = 0; y < left.height; ++y) std::copy_n(&left.at(0, y), left.width, &both.at(0, y));
-  for (int y = 0; y < right.height; ++y) std::copy_n(&right.at(0, y), right.width, &both.at(left.width + gap, y));
+  if (!left.coverage.empty() || !right.coverage.empty()) both.coverage.assign(both.pixels.size(), 0.0f);
+  put(left, 0, both);
+  put(right, left.width + gap, both);
   return both;
 }
 

@@ -22,36 +22,42 @@ class Raycaster {
         shader_(shader),
         field_(volume),
         intersector_(volume),
-        world_to_index_(glm::inverse(volume.lattice().frame.axes)),
-        eye_index_(volume.lattice().frame.index(camera.eye)) {}
+        world_to_index_(glm::inverse(volume.lattice().frame.axes)) {}
 
-  [[nodiscard]] Vec3f pixel(int x, int y, std::uint64_t seed) const {
+  void draw_pixel(int x, int y, std::uint64_t seed, Image& image) const {
     RandomStream random(seed, std::uint64_t(y) * std::uint64_t(settings_.width) + std::uint64_t(x));
     const int n = settings_.supersampling;
     Vec3f sum(0.0f);
+    int seen = 0;
     for (int s = 0; s < n * n; ++s) {
       const int column = s % n;
       const int row = s / n;
       const double px = x + (column + random.uniform_double()) / n;
       const double py = y + (row + random.uniform_double()) / n;
-      sum += radiance((2.0 * px - settings_.width) / settings_.height, 1.0 - 2.0 * py / settings_.height);
+      const auto surface = radiance((2.0 * px - settings_.width) / settings_.height, 1.0 - 2.0 * py / settings_.height);
+      if (surface) ++seen;
+      sum += surface ? *surface : settings_.background.value_or(Vec3f(0.0f));
     }
-    return sum / float(n * n);
+    const int counted = settings_.background ? n * n : seen;
+    image.at(x, y) = sum / float(std::max(1, counted));
+    if (!image.coverage.empty()) image.coverage[image.offset(x, y)] = float(seen) / float(n * n);
   }
 
  private:
-  [[nodiscard]] Vec3f radiance(double x, double y) const {
+  /// What the surface sends along the ray through a point of the picture; nothing where there is none.
+  [[nodiscard]] std::optional<Vec3f> radiance(double x, double y) const {
     const Vec3 direction = camera_.direction(x, y);
     const Vec3 index_direction = world_to_index_ * direction;
-    auto hit = intersector_.first_hit(eye_index_, index_direction, settings_.isovalue);
-    if (!hit) return settings_.background;
+    const Vec3 begin = field_.lattice().frame.index(camera_.origin(x, y));
+    auto hit = intersector_.first_hit(begin, index_direction, settings_.isovalue);
+    if (!hit) return std::nullopt;
     const LevelSetSide seen = side_seen(hit->position, index_direction);
     if (settings_.only && seen != *settings_.only) {
       // Beyond it the ray is on the other side of the level set and meets it from there next.
       const bool outer = *settings_.only == LevelSetSide::kOuter;
       hit = intersector_.next_hit(hit->position, index_direction, settings_.isovalue,
                                   outer ? settings_.outer : opposite(settings_.outer));
-      if (!hit) return settings_.background;
+      if (!hit) return std::nullopt;
     }
     SurfacePoint point;
     point.index = hit->position;
@@ -75,7 +81,6 @@ class Raycaster {
   TrilinearField field_;
   LevelSetIntersector intersector_;
   Mat3 world_to_index_;
-  Vec3 eye_index_;
 };
 
 /// A headlight over the viewer's shoulder and a sky of half its strength.
@@ -95,10 +100,11 @@ Image render(const Volume& volume, const Camera& camera, const RenderSettings& s
                                    settings.width, settings.height, settings.supersampling, settings.supersampling));
   }
   Image image(settings.width, settings.height);
+  if (!settings.background) image.coverage.assign(image.pixels.size(), 0.0f);
   const Raycaster raycaster(volume, camera, settings, shader);
   parallel_blocks(std::size_t(settings.height), 4, run, "render", [&](const Block& rows) {
     for (auto y = int(rows.begin); y < int(rows.end); ++y) {
-      for (int x = 0; x < settings.width; ++x) image.at(x, y) = raycaster.pixel(x, y, run.seed);
+      for (int x = 0; x < settings.width; ++x) raycaster.draw_pixel(x, y, run.seed, image);
     }
   });
   return image;

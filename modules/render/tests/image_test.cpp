@@ -20,5 +20,26 @@ TEST(WritePng, RefusesMorePixelsThanItCanCount) {
   EXPECT_THROW(require_png_size(2147483647, 2147483647), InvalidInput);
 }
 
+TEST(WritePng, RefusesCoverageOfOtherPixels) {
+  Image image(20, 10);
+  image.coverage.assign(199, 1.0f);
+  EXPECT_THROW(write_png(image, "never-written.png"), InvalidInput);
+  EXPECT_THROW(require_png_size(17000, 17000, 4), InvalidInput);
+  EXPECT_NO_THROW(require_png_size(17000, 17000));
+}
+
+TEST(Images, StandSideBySideWithTheirCoverage) {
+  Image clear(2, 1, Vec3f(0.5f));
+  clear.coverage = {0.0f, 1.0f};
+  const Image both = side_by_side(clear, Image(1, 2, Vec3f(0.25f)), 1, Vec3f(1.0f));
+  EXPECT_EQ(both.coverage, (std::vector<float>{0, 1, 0, 1, 0, 0, 0, 1}));
+  EXPECT_EQ(both.at(3, 1), Vec3f(0.25f));
+  EXPECT_TRUE(side_by_side(Image(1, 1), Image(1, 1), 1, Vec3f(1.0f)).coverage.empty());
+}
+
+TEST(Srgb, CodesAndLinearValuesAreInverse) {
+  for (int code = 0; code < 256; ++code) EXPECT_EQ(int(srgb_code(linear_value(std::uint8_t(code)))), code);
+}
+
 }  // namespace
 }  // namespace isolux

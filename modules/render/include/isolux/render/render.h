@@ -31,8 +31,8 @@ struct RenderSettings {
   float isovalue = 0.0f;
   OuterSide outer = OuterSide::kLower;
   GradientKind gradient = GradientKind::kCentralDifferences;
-  Vec3f background{0.2f};              ///< linear radiance
-  std::optional<LevelSetSide> only{};  ///< shown alone; the camera looks through the other side
+  std::optional<Vec3f> background{Vec3f(0.2f)};  ///< linear radiance; nothing: transparent (Image::coverage)
+  std::optional<LevelSetSide> only{};            ///< shown alone; the camera looks through the other side
 };
 
 /// Casts rays at the level set {f = isovalue} of the trilinear field itself, not at a mesh of it. The same bits for any
