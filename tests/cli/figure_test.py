@@ -27,7 +27,8 @@ class Figures(CommandLineTest):
     def test_may_be_transparent(self):
         for mode, width in (("local", 60), ("both", 124)):
             self.succeed("bake", "gen:two-spheres:24", "-o", "light.nrrd", "--rays", 1, "--bounces", 0, "--quiet")
-            content = open(self.render("--background", "transparent", "--mode", mode, "--light", "light.nrrd"), "rb").read()
+            self.render("--background", "transparent", "--mode", mode, "--light", "light.nrrd")
+            content = self.read("i.png")
             self.assertEqual(struct.unpack(">2I2B", content[16:26]), (width, 40, 8, 6))  # RGBA
 
     def test_are_filled_by_the_surface_where_that_is_asked(self):

@@ -13,6 +13,7 @@
 
 #include "commands.h"
 #include "terminal.h"
+#include "value_moments.h"
 #include "volume_options.h"
 
 namespace isolux {
@@ -23,15 +24,13 @@ constexpr std::size_t kBins = 32;
 struct Statistics {
   float low = std::numeric_limits<float>::infinity();
   float high = -std::numeric_limits<float>::infinity();
-  double mean = 0.0;
-  std::size_t finite = 0;
+  ValueMoments moments;  ///< of the finite values
   std::size_t not_finite = 0;
   std::array<std::size_t, kBins> histogram{};  ///< of the finite values, equal bins from low to high
 };
 
 Statistics statistics(const auto& values) {
-  Statistics s;
-  double sum = 0.0;
+  Statistics s{.moments = value_moments(values)};
   for (const float v : values) {
     if (!std::isfinite(v)) {
       ++s.not_finite;
@@ -39,11 +38,7 @@ Statistics statistics(const auto& values) {
     }
     s.low = std::min(s.low, v);
     s.high = std::max(s.high, v);
-    sum += double(v);
-    ++s.finite;
   }
-  if (s.finite == 0) return s;
-  s.mean = sum / double(s.finite);
   const double scale = s.high > s.low ? double(kBins) / (double(s.high) - double(s.low)) : 0.0;
   for (const float v : values) {
     if (std::isfinite(v)) ++s.histogram[std::min(kBins - 1, std::size_t((double(v) - double(s.low)) * scale))];
@@ -68,9 +63,10 @@ nlohmann::json to_json(const StoredVolume& volume, const Statistics& s) {
                       {"voxels", lattice.count()},
                       {"not_finite", s.not_finite},
                       {"sha256", volume_sha256(volume)}};
-  if (s.finite > 0) {
+  if (s.moments.count > 0) {
     json["range"] = {s.low, s.high};
-    json["mean"] = s.mean;
+    json["mean"] = s.moments.mean;
+    json["standard_deviation"] = s.moments.standard_deviation;
     json["histogram"] = {{"low", s.low}, {"high", s.high}, {"counts", s.histogram}};
   }
   return json;
@@ -86,12 +82,14 @@ void print(const StoredVolume& volume, const Statistics& s) {
   fmt::print("spacing  {:g} x {:g} x {:g}\n", spacing.x, spacing.y, spacing.z);
   fmt::print("origin   {:g}, {:g}, {:g} in {}\n", o.x, o.y, o.z, volume.space);
   if (s.not_finite > 0) fmt::print("voxels that are infinite or not a number: {}\n", s.not_finite);
-  if (s.finite == 0) return;
-  fmt::print("range    {:g} to {:g}, mean {:g}\n", s.low, s.high, s.mean);
+  if (s.moments.count == 0) return;
+  fmt::print("range    {:g} to {:g}, mean {:g}, standard deviation {:g}\n", s.low, s.high, s.moments.mean,
+             s.moments.standard_deviation);
+  fmt::print("{} bins: where each begins, its voxels, and a bar of their logarithm\n", kBins);
   const std::size_t most = *std::max_element(s.histogram.begin(), s.histogram.end());
   const double step = (double(s.high) - double(s.low)) / double(kBins);
   for (std::size_t b = 0; b < kBins; ++b) {
-    // Logarithmic bars: the background would hide everything else.
+    // Linear bars of the background would hide everything else.
     const double bar =
         s.histogram[b] > 0 ? 1.0 + 49.0 * std::log(double(s.histogram[b])) / std::log(double(most) + 1.0) : 0.0;
     fmt::print("  {:>12.5g} {:>10}  {}\n", double(s.low) + step * double(b), s.histogram[b],
