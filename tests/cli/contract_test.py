@@ -24,14 +24,6 @@ class Info(CommandLineTest):
         self.assertEqual(info["not_finite"], 2)
         self.assertEqual(info["range"], [1, 8])
 
-    def test_says_how_values_spread(self):
-        self.write("v_2x2x2_uint8.raw", bytes([2, 4, 4, 4, 5, 5, 7, 9]))
-        info = json.loads(self.succeed("info", "v_2x2x2_uint8.raw", "--json").stdout)
-        self.assertEqual((info["mean"], info["standard_deviation"]), (5, 2))
-        said = self.succeed("info", "v_2x2x2_uint8.raw").stdout
-        self.assertIn("mean 5, standard deviation 2\n", said)
-        self.assertIn("a bar of their logarithm\n", said)
-
 
 class Backends(CommandLineTest):
     def test_json_lists_stages_backends_and_options(self):

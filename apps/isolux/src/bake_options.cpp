@@ -42,10 +42,6 @@ TraceSettings TraceOptions::settings() const {
   return settings;
 }
 
-void add_isovalue(CLI::App& command, float& isovalue) {
-  command.add_option("--iso", isovalue, "isovalue")->required()->type_name("H")->check(finite_number());
-}
-
 void warn_outside_range(const VolumeView& volume, float isovalue, const Session& session) {
   const ValueRange range = value_range(volume);
   if (isovalue >= range.low && isovalue <= range.high) return;

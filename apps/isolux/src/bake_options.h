@@ -34,9 +34,6 @@ class TraceOptions {
   std::string tracer_;
 };
 
-/// Adds the required option --iso, a finite number.
-void add_isovalue(CLI::App& command, float& isovalue);
-
 /// Says so if no voxel is on one side of the isovalue: the surface is empty.
 void warn_outside_range(const VolumeView& volume, float isovalue, const Session& session);
 

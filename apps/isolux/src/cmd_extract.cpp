@@ -142,8 +142,9 @@ MeshExtras notes_of(const VolumeView& volume, const VertexLight& light, const Ex
   return extras;
 }
 
-void extract(const Subject& subject, const BackendChoice& choice, const ExtractOptions& options, Session& session) {
+void extract(const Subject& subject, const BackendChoice& choice, ExtractOptions options, Session& session) {
   const VolumeView& volume = subject.volume;
+  options.isovalue = options.iso.in(volume);
   std::optional<LightFile> light;
   if (options.light.given()) light = options.light.read(*subject.floats, session);
   const Scene scene = scene_for(options, light);
@@ -203,7 +204,7 @@ void add_extract_command(CLI::App& program, Session& session) {
   CLI::App& command = *program.add_subcommand("extract", "One isosurface as a mesh, with its light as vertex colours");
   const auto options = std::make_shared<ExtractOptions>();
   options->volume.add_to(command, session);
-  add_isovalue(command, options->isovalue);
+  options->iso.add_to(command);
   session.writes(
       command.add_option("-o,--output", options->output, "the mesh to write: .ply, .glb, .obj, .off or .stl")
           ->required()

@@ -15,6 +15,7 @@
 
 #include "bake_options.h"
 #include "commands.h"
+#include "isovalue_option.h"
 #include "light_options.h"
 #include "parse.h"
 #include "usage.h"
@@ -32,7 +33,8 @@ struct RenderOptions {
   VolumeOptions volume;
   LightOptions light;
   SideOption side;
-  float isovalue = 0.0f;
+  IsovalueOption iso;
+  float isovalue = 0.0f;  ///< `iso` in the volume, once that is read
   std::string output;
   std::string size = "800x600";
   std::string view = "30,20";
@@ -180,7 +182,7 @@ nlohmann::json picture_settings(const RenderOptions& options, const RenderSettin
   return result;
 }
 
-void run_render(const RenderOptions& options, Session& session) {
+void run_render(RenderOptions options, Session& session) {
   const auto [width, height] = parse_size2("--size", options.size);
   if (view_of(options).projection == Projection::kOrthographic && !options.eye.empty())
     throw UsageError("--projection orthographic: --eye looks in perspective; give one of them");
@@ -195,6 +197,7 @@ void run_render(const RenderOptions& options, Session& session) {
   if (mode == "both") require_png(options.output, 2 * width + kGap, height, channels);
   warn_of_no_effect(options, mode, session);
   const Volume volume = options.volume.read(session);
+  options.isovalue = options.iso.in(volume);
   std::optional<LightFile> light;
   if (options.light.given()) light = options.light.read(volume, session);
   warn_outside_range(volume, options.isovalue, session);
@@ -247,7 +250,7 @@ void add_render_command(CLI::App& program, Session& session) {
   CLI::App& command = *program.add_subcommand("render", "A picture of one isosurface; needs no display and no GPU");
   const auto options = std::make_shared<RenderOptions>();
   options->volume.add_to(command, session);
-  add_isovalue(command, options->isovalue);
+  options->iso.add_to(command);
   session.writes(
       command.add_option("-o,--output", options->output, "the picture to write")->required()->type_name("IMAGE.png"));
   options->light.add_to(command, session);

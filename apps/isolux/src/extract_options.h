@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "bake_options.h"
+#include "isovalue_option.h"
 #include "light_options.h"
 #include "volume_options.h"
 
@@ -17,7 +18,8 @@ struct ExtractOptions {
   LightOptions light;
   SideOption side;
   TraceOptions trace;
-  float isovalue = 0.0f;
+  IsovalueOption iso;
+  float isovalue = 0.0f;  ///< `iso` in the volume, once that is read
   std::string output;
   std::string backend;
   OuterOption outer;
