@@ -103,8 +103,9 @@ void require_lightable(const Volume& volume, const BakeSettings& settings) {
   const ValueRange range = require_traceable(volume);
   const std::optional<ValueRange>& wanted = settings.isovalues;
   if (range.low == range.high) {
-    throw InvalidInput(
-        fmt::format("{}: every voxel is {}; a constant volume has no level set to light", volume.name, range.low));
+    throw InvalidInput(fmt::format("{}: every voxel is {}{}; a constant volume has no level set to light", volume.name,
+                                   range.low,
+                                   volume.rounded ? " since values were rounded to float32 (subtract an offset)" : ""));
   }
   if (wanted && (wanted->high < range.low || wanted->low > range.high)) {
     throw InvalidInput(fmt::format("isovalue range {}:{}: the values of {} go from {} to {}", wanted->low, wanted->high,

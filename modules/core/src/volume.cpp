@@ -70,7 +70,9 @@ Volume to_floats(StoredVolume volume) {
   Volume result{.values = {},
                 .name = std::move(volume.name),
                 .stored_type = volume.stored_type,
-                .space = std::move(volume.space)};
+                .space = std::move(volume.space),
+                .rounded = volume.rounded,
+                .remarks = std::move(volume.remarks)};
   if (auto* floats = std::get_if<Grid<float>>(&volume.values)) {
     result.values = std::move(*floats);
   } else {
@@ -87,7 +89,9 @@ StoredVolume keep_floats(Volume volume) {
   return {.values = std::move(volume.values),
           .name = std::move(volume.name),
           .stored_type = volume.stored_type,
-          .space = std::move(volume.space)};
+          .space = std::move(volume.space),
+          .rounded = volume.rounded,
+          .remarks = std::move(volume.remarks)};
 }
 
 VolumeView::VolumeView(const Volume& volume)

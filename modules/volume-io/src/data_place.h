@@ -26,8 +26,9 @@ struct DataPlace {
 /// the file and the bytes expected and found
 void require_room(const DataPlace& place, std::uint64_t count);
 
-/// \throw IoError naming the file for data that are too few, too many or damaged; InvalidInput for a number that does
-/// not fit a float; Cancelled
-[[nodiscard]] AnyValues read_values(const DataPlace& place, std::uint64_t count, VoxelForm form, const Run& run);
+/// The values less ReadOptions::subtract. \throw IoError naming the file for data that are too few, too many or
+/// damaged; InvalidInput for a number that does not fit a float; Cancelled
+[[nodiscard]] DecodedValues read_values(const DataPlace& place, std::uint64_t count, const ReadOptions& options,
+                                        const Run& run);
 
 }  // namespace isolux::detail

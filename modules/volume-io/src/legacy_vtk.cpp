@@ -125,12 +125,13 @@ std::vector<std::string> read_lattice(const std::string& path, VtkHeader& header
   return words;
 }
 
-std::vector<float> read_text(const LegacyVtk& header, const Run& run) {
+DecodedValues read_text(const LegacyVtk& header, const ReadOptions& options, const Run& run) {
   const std::uint64_t count = header.lattice.count();
   const std::string& path = header.data.file;
   NumberText text(path, header.data.offset, " \n\r\t\f\v");
   std::vector<float> values;
   values.reserve(count);
+  bool rounded = false;
   while (values.size() < count) {
     const std::string& word = text.next();
     if (word.empty())
@@ -138,10 +139,12 @@ std::vector<float> read_text(const LegacyVtk& header, const Run& run) {
     if (!reads_as(header.data.layout.type, word))
       throw InvalidInput(fmt::format("{}: '{}', value {} of the data, is no finite {}", path, excerpt(word),
                                      values.size(), scalar_type_name(header.data.layout.type)));
-    values.push_back(float(text.number()));
+    const double value = text.number() - options.subtract;
+    values.push_back(float(value));
+    rounded |= double(values.back()) != value;
     if (values.size() % 65536 == 0) throw_if_stopped(run);
   }
-  return values;
+  return {std::move(values), rounded};
 }
 
 }  // namespace
@@ -177,9 +180,9 @@ LegacyVtk read_legacy_vtk_header(const std::string& path) {
   return result;
 }
 
-AnyValues read_legacy_vtk_values(const LegacyVtk& header, VoxelForm form, const Run& run) {
-  if (header.text) return read_text(header, run);
-  return read_values(header.data, header.lattice.count(), form, run);
+DecodedValues read_legacy_vtk_values(const LegacyVtk& header, const ReadOptions& options, const Run& run) {
+  if (header.text) return read_text(header, options, run);
+  return read_values(header.data, header.lattice.count(), options, run);
 }
 
 }  // namespace isolux::detail

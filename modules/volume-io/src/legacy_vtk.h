@@ -25,6 +25,6 @@ struct LegacyVtk {
 
 /// Further attributes may follow the values: the format says so. \throw IoError, InvalidInput, Cancelled; of text also
 /// for what is no finite number of its type
-[[nodiscard]] AnyValues read_legacy_vtk_values(const LegacyVtk& header, VoxelForm form, const Run& run);
+[[nodiscard]] DecodedValues read_legacy_vtk_values(const LegacyVtk& header, const ReadOptions& options, const Run& run);
 
 }  // namespace isolux::detail

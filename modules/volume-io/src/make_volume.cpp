@@ -25,7 +25,7 @@ void require_frame(const std::string& path, const IndexToWorld& frame) {
     throw InvalidInput(fmt::format("{}: the directions of the axes span no volume", path));
 }
 
-StoredVolume make_volume(const std::string& name, Lattice lattice, AnyValues values, ScalarType stored,
+StoredVolume make_volume(const std::string& name, Lattice lattice, DecodedValues values, ScalarType stored,
                          std::string space, const ReadOptions& options) {
   if (options.spacing) {
     for (int a = 0; a < 3; ++a) {
@@ -36,8 +36,12 @@ StoredVolume make_volume(const std::string& name, Lattice lattice, AnyValues val
     }
   }
   require_frame(name, lattice.frame);
-  StoredVolume volume{.values = {}, .name = name, .stored_type = stored, .space = std::move(space)};
-  std::visit([&](auto& list) { volume.values = Grid(lattice, std::move(list)); }, values);
+  StoredVolume volume{.values = {},
+                      .name = name,
+                      .stored_type = options.subtract != 0.0 ? ScalarType::kFloat32 : stored,
+                      .space = std::move(space),
+                      .rounded = values.rounded};
+  std::visit([&](auto& list) { volume.values = Grid(lattice, std::move(list)); }, values.list);
   return volume;
 }
 

@@ -45,8 +45,9 @@ struct NrrdHeader {
 /// \throw IoError, InvalidInput naming the file, the field, its value and what is allowed
 [[nodiscard]] NrrdHeader read_nrrd_header(const std::string& path, const ReadOptions& options);
 
-/// The values of all axes, in `form`; floats where they are written as text. \throw IoError, InvalidInput, Cancelled
-[[nodiscard]] AnyValues read_nrrd_values(const NrrdHeader& header, VoxelForm form, const Run& run);
+/// The values of all axes, in ReadOptions::form and less ReadOptions::subtract; floats where they are written as text.
+/// \throw IoError, InvalidInput, Cancelled
+[[nodiscard]] DecodedValues read_nrrd_values(const NrrdHeader& header, const ReadOptions& options, const Run& run);
 
 /// The lattice of three of the axes, in LPS where the space is anatomical, and its space's name as Volume has it.
 /// \throw InvalidInput for directions that span no volume

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 #include <isolux/core/error.h>
 
+#include <cmath>
 #include <fstream>
 
 namespace isolux::detail {
@@ -25,8 +26,8 @@ std::uint64_t skip_lines(const NrrdHeader& header) {
   return offset;
 }
 
-AnyValues read_raw(const NrrdHeader& header, std::uint64_t offset, std::uint64_t count, VoxelForm form,
-                   const Run& run) {
+DecodedValues read_raw(const NrrdHeader& header, std::uint64_t offset, std::uint64_t count, const ReadOptions& options,
+                       const Run& run) {
   const std::uint64_t size = require_file(header.data_file);
   const std::uint64_t needed = count * bytes_per_scalar(header.layout.type);
   const std::uint64_t skip = header.byte_skip > 0 ? std::uint64_t(header.byte_skip) : 0;
@@ -37,11 +38,11 @@ AnyValues read_raw(const NrrdHeader& header, std::uint64_t offset, std::uint64_t
   if (found < needed || (found > needed && !foreign))
     throw IoError(fmt::format("{}: {} bytes of data expected, {} found", header.data_file, needed, found));
   const std::uint64_t begin = header.byte_skip < 0 ? size - needed : offset + skip;
-  return decode_scalars(*file_source(header.data_file, begin), header.layout, count, form, header.data_file, run);
+  return decode_scalars(*file_source(header.data_file, begin), header.layout, count, options, header.data_file, run);
 }
 
-AnyValues read_gzip(const NrrdHeader& header, std::uint64_t offset, std::uint64_t count, VoxelForm form,
-                    const Run& run) {
+DecodedValues read_gzip(const NrrdHeader& header, std::uint64_t offset, std::uint64_t count, const ReadOptions& options,
+                        const Run& run) {
   const std::uint64_t size = require_file(header.data_file);
   const std::uint64_t needed = count * bytes_per_scalar(header.layout.type);
   if (needed / kLargestInflation > size)
@@ -49,45 +50,48 @@ AnyValues read_gzip(const NrrdHeader& header, std::uint64_t offset, std::uint64_
                               needed, size));
   const auto source = gzip_source(header.data_file, offset);
   skip_bytes(*source, std::uint64_t(header.byte_skip), header.data_file);
-  auto values = decode_scalars(*source, header.layout, count, form, header.data_file, run);
+  auto values = decode_scalars(*source, header.layout, count, options, header.data_file, run);
   std::byte more{};
   if (source->read(std::span(&more, 1)) != 0)
     throw IoError(fmt::format("{}: {} bytes of data expected, more found", header.data_file, needed));
   return values;
 }
 
-std::vector<float> read_text(const NrrdHeader& header, std::uint64_t offset, std::uint64_t count, const Run& run) {
+DecodedValues read_text(const NrrdHeader& header, std::uint64_t offset, std::uint64_t count, const ReadOptions& options,
+                        const Run& run) {
   const std::uint64_t size = require_file(header.data_file);
   if (count > size) throw IoError(fmt::format("{}: {} numbers expected in {} bytes", header.data_file, count, size));
   NumberText text(header.data_file, offset + std::uint64_t(header.byte_skip), " \n\r\t,\f\v");
   std::vector<float> values;
   values.reserve(count);
+  bool rounded = false;
   while (!text.next().empty()) {
-    const double value = text.number();
+    const double value = text.number() - options.subtract;
     if (values.size() == count)
       throw IoError(fmt::format("{}: {} numbers expected, more found", header.data_file, count));
     values.push_back(float(value));
+    rounded |= double(values.back()) != value && !std::isnan(value);
     if (values.size() % 65536 == 0) throw_if_stopped(run);
   }
   if (values.size() < count)
     throw IoError(fmt::format("{}: {} numbers expected, {} found", header.data_file, count, values.size()));
-  return values;
+  return {std::move(values), rounded};
 }
 
 }  // namespace
 
-AnyValues read_nrrd_values(const NrrdHeader& header, VoxelForm form, const Run& run) {
+DecodedValues read_nrrd_values(const NrrdHeader& header, const ReadOptions& options, const Run& run) {
   std::vector<std::int64_t> sizes;
   for (const auto& axis : header.axes) sizes.push_back(axis.size);
   const std::uint64_t count = checked_count(header.path, sizes, bytes_per_scalar(header.layout.type));
   const std::uint64_t offset = skip_lines(header);
   switch (header.encoding) {
     case NrrdEncoding::kRaw:
-      return read_raw(header, offset, count, form, run);
+      return read_raw(header, offset, count, options, run);
     case NrrdEncoding::kGzip:
-      return read_gzip(header, offset, count, form, run);
+      return read_gzip(header, offset, count, options, run);
     case NrrdEncoding::kText:
-      return read_text(header, offset, count, run);
+      return read_text(header, offset, count, options, run);
   }
   throw InvalidInput(fmt::format("{}: unknown encoding", header.path));
 }

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <isolux/core/error.h>
 
+#include <algorithm>
 #include <array>
 
 namespace isolux::detail {
@@ -16,6 +17,14 @@ T receive_value(ByteSource& received, const std::string& path) {
   return value;
 }
 
+std::string receive_remark(ByteSource& received, const std::string& path, std::uint64_t bytes) {
+  constexpr std::uint64_t kLongest = 1 << 16;
+  std::string remark(std::min(bytes, kLongest), '\0');
+  if (bytes > kLongest || received.read(std::as_writable_bytes(std::span(remark))) != bytes)
+    throw IoError(fmt::format("{}: the library that reads it gave no data", path));
+  return remark;
+}
+
 void require_type(const std::string& path, const CheckedHeader& expected, ScalarType type) {
   if (expected.type && *expected.type != type)
     throw InvalidInput(fmt::format("{}: the header says voxels of type {}, the library that reads it {}", path,
@@ -25,9 +34,10 @@ void require_type(const std::string& path, const CheckedHeader& expected, Scalar
 }  // namespace
 
 ReceivedVolume receive_volume(ByteSource& received, const std::string& path, const CheckedHeader& expected,
-                              VoxelForm form, const Run& run) {
+                              const ReadOptions& options, const Run& run) {
   ReceivedVolume volume;
   volume.header = receive_value<SentVolume>(received, path);
+  volume.remark = receive_remark(received, path, volume.header.remark_bytes);
   const Index3 size = volume.header.lattice.size;
   if (size != expected.size)
     throw InvalidInput(fmt::format("{}: the header says {}x{}x{} voxels, the library that reads it {}x{}x{}", path,
@@ -45,10 +55,10 @@ ReceivedVolume receive_volume(ByteSource& received, const std::string& path, con
           fmt::format("{}: {} values expected of the library that reads it, {} came", path, count / blocks, in_block));
     Run quiet = run;
     if (blocks > 1) quiet.progress = {};
-    auto values = decode_scalars(received, {block.type, false}, in_block, form, path, quiet);
+    auto values = decode_scalars(received, {block.type, false}, in_block, options, path, quiet);
     if (b == 0) {
       volume.values = std::move(values);
-      std::visit([&](auto& list) { list.reserve(count); }, volume.values);
+      std::visit([&](auto& list) { list.reserve(count); }, volume.values.list);
     } else {
       append(volume.values, values);
     }

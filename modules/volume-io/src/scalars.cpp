@@ -1,6 +1,7 @@
 #include "scalars.h"
 
 #include "number_text.h"
+#include "scaled_values.h"
 #include "with_type.h"
 
 #include <fmt/format.h>
@@ -27,11 +28,24 @@ void swap_bytes(std::span<std::byte> bytes) {
     std::reverse(bytes.begin() + std::ptrdiff_t(i), bytes.begin() + std::ptrdiff_t(i + sizeof(T)));
 }
 
-/// Numbers `first` and on of `path`'s data as floats. \throw InvalidInput
+/// Whether `number` is a float, or none at all.
 template <class T>
-void convert(std::span<const T> values, std::span<float> floats, std::uint64_t first, const std::string& path) {
+bool is_float(T number) {
+  if constexpr (std::is_floating_point_v<T>) {
+    return double(float(number)) == double(number) || std::isnan(number);
+  } else {
+    const auto size = number < 0 ? 0 - std::uint64_t(number) : std::uint64_t(number);
+    return size == 0 || std::bit_width(size >> std::countr_zero(size)) <= std::numeric_limits<float>::digits;
+  }
+}
+
+/// Numbers `first` and on of `path`'s data as floats; whether one of them was rounded. \throw InvalidInput
+template <class T>
+bool convert(std::span<const T> values, std::span<float> floats, std::uint64_t first, const std::string& path) {
+  bool rounded = false;
   for (std::size_t i = 0; i < values.size(); ++i) {
     floats[i] = float(values[i]);
+    if constexpr (sizeof(T) >= sizeof(float) && !std::is_same_v<T, float>) rounded |= !is_float(values[i]);
     if constexpr (std::is_same_v<T, double>) {
       if (!fits_float(values[i]))
         throw InvalidInput(
@@ -40,14 +54,16 @@ void convert(std::span<const T> values, std::span<float> floats, std::uint64_t f
                         path, values[i], first + i, double(std::numeric_limits<float>::max())));
     }
   }
+  return rounded;
 }
 
 /// Numbers of type T in the file, read into the same or into floats.
 template <class T, class Out>
-std::vector<Out> decode(ByteSource& source, bool big_endian, std::uint64_t count, const std::string& path,
-                        const Run& run) {
+DecodedValues decode(ByteSource& source, bool big_endian, std::uint64_t count, const std::string& path,
+                     const Run& run) {
   constexpr bool kConverts = !std::is_same_v<T, Out>;
   std::vector<Out> values;
+  bool rounded = false;
   // Reserved memory is touched only as the data come in.
   values.reserve(count);
   std::vector<T> buffer(kConverts ? std::min<std::uint64_t>(count, kChunk) : 0);
@@ -67,11 +83,11 @@ std::vector<Out> decode(ByteSource& source, bool big_endian, std::uint64_t count
                                 done * sizeof(T) + got));
     }
     if (big_endian && sizeof(T) > 1) swap_bytes<T>(bytes);
-    if constexpr (kConverts) convert(std::span<const T>(buffer).first(wanted), out, done, path);
+    if constexpr (kConverts) rounded |= convert(std::span<const T>(buffer).first(wanted), out, done, path);
     done += wanted;
     if (run.progress) run.progress("read", double(done) / double(count));
   }
-  return values;
+  return {std::move(values), rounded};
 }
 
 template <class T>
@@ -125,27 +141,30 @@ bool reads_as(ScalarType type, std::string_view text) {
   });
 }
 
-AnyValues decode_scalars(ByteSource& source, const ScalarLayout& layout, std::uint64_t count, VoxelForm form,
-                         const std::string& path, const Run& run) {
-  return with_type(layout.type, [&](auto zero) -> AnyValues {
+DecodedValues decode_scalars(ByteSource& source, const ScalarLayout& layout, std::uint64_t count,
+                             const ReadOptions& options, const std::string& path, const Run& run) {
+  if (options.subtract != 0.0) return decode_scaled(source, layout, count, 1.0, -options.subtract, path, run);
+  return with_type(layout.type, [&](auto zero) -> DecodedValues {
     using T = decltype(zero);
     if constexpr (std::is_integral_v<T> && sizeof(T) <= 2) {
-      if (form == VoxelForm::kStored) return decode<T, T>(source, layout.big_endian, count, path, run);
+      if (options.form == VoxelForm::kStored) return decode<T, T>(source, layout.big_endian, count, path, run);
     }
     return decode<T, float>(source, layout.big_endian, count, path, run);
   });
 }
 
-void append(AnyValues& values, const AnyValues& more) {
-  if (values.index() != more.index() && !std::holds_alternative<std::vector<float>>(values))
-    values = std::visit([](const auto& list) { return std::vector<float>(list.begin(), list.end()); }, values);
+void append(DecodedValues& values, const DecodedValues& more) {
+  values.rounded |= more.rounded;
+  if (values.list.index() != more.list.index() && !std::holds_alternative<std::vector<float>>(values.list))
+    values.list =
+        std::visit([](const auto& list) { return std::vector<float>(list.begin(), list.end()); }, values.list);
   std::visit(
       [](auto& list, const auto& behind) {
         if constexpr (std::is_same_v<decltype(list), std::vector<float>&> ||
                       std::is_same_v<std::decay_t<decltype(list)>, std::decay_t<decltype(behind)>>)
           list.insert(list.end(), behind.begin(), behind.end());
       },
-      values, more);
+      values.list, more.list);
 }
 
 void encode_scalars(const VolumeView::Voxels& values, ScalarType type,

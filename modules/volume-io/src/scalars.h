@@ -31,6 +31,12 @@ struct ScalarLayout {
 using AnyValues = std::variant<std::vector<float>, std::vector<std::uint8_t>, std::vector<std::int8_t>,
                                std::vector<std::uint16_t>, std::vector<std::int16_t>>;
 
+/// Values as they were read.
+struct DecodedValues {
+  AnyValues list;
+  bool rounded = false;  ///< one of them is no float in the file
+};
+
 /// Whether a number has a nearest float: infinities and NaN have one, finite numbers beyond the largest have not.
 [[nodiscard]] bool fits_float(double value);
 
@@ -38,13 +44,14 @@ using AnyValues = std::variant<std::vector<float>, std::vector<std::uint8_t>, st
 /// exponent.
 [[nodiscard]] bool reads_as(ScalarType type, std::string_view text);
 
-/// Reads `count` numbers, in `form`. \throw InvalidInput for a number that does not fit a float; IoError naming `path`
-/// and the bytes expected and found if there are fewer; Cancelled. Memory follows what was read, not what was promised.
-[[nodiscard]] AnyValues decode_scalars(ByteSource& source, const ScalarLayout& layout, std::uint64_t count,
-                                       VoxelForm form, const std::string& path, const Run& run);
+/// Reads `count` numbers, in ReadOptions::form and less ReadOptions::subtract. \throw InvalidInput for a number that
+/// does not fit a float; IoError naming `path` and the bytes expected and found if there are fewer; Cancelled. Memory
+/// follows what was read, not what was promised.
+[[nodiscard]] DecodedValues decode_scalars(ByteSource& source, const ScalarLayout& layout, std::uint64_t count,
+                                           const ReadOptions& options, const std::string& path, const Run& run);
 
 /// Puts `more` behind `values`: both in floats if their types differ.
-void append(AnyValues& values, const AnyValues& more);
+void append(DecodedValues& values, const DecodedValues& more);
 
 /// Encodes a volume's voxels in pieces, little endian, and hands each piece on. Values must be representable: whole
 /// numbers within the range of an integer type (its limits as rounded to float are taken as the limits themselves).

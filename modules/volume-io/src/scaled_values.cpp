@@ -24,11 +24,12 @@ double number_of(const std::byte* bytes) {
 
 }  // namespace
 
-std::vector<float> decode_scaled(ByteSource& source, const ScalarLayout& layout, std::uint64_t count, double slope,
-                                 double intercept, const std::string& path, const Run& run) {
+DecodedValues decode_scaled(ByteSource& source, const ScalarLayout& layout, std::uint64_t count, double slope,
+                            double intercept, const std::string& path, const Run& run) {
   const std::size_t width = bytes_per_scalar(layout.type);
   const auto number = with_type(layout.type, [](auto zero) { return number_of<decltype(zero)>; });
   std::vector<float> values;
+  bool rounded = false;
   values.reserve(count);
   std::vector<std::byte> piece(std::min<std::uint64_t>(count, kPiece) * width);
   while (values.size() < count) {
@@ -44,14 +45,15 @@ std::vector<float> decode_scaled(ByteSource& source, const ScalarLayout& layout,
       const double scaled = slope * stored + intercept;
       if (!fits_float(scaled) || std::isfinite(scaled) != std::isfinite(stored))
         throw InvalidInput(
-            fmt::format("{}: {}, value {} of the data, is {:.5g} in the header's scaling, {} * x + {}: "
+            fmt::format("{}: {}, value {} of the data, is {:.5g} as {} * x + {}, by which values are scaled: "
                         "beyond what float32 holds, in which volumes are kept",
                         path, stored, values.size(), scaled, slope, intercept));
       values.push_back(float(scaled));
+      rounded |= double(values.back()) != scaled && !std::isnan(scaled);
     }
     if (run.progress) run.progress("read", double(values.size()) / double(count));
   }
-  return values;
+  return {std::move(values), rounded};
 }
 
 }  // namespace isolux::detail

@@ -7,7 +7,7 @@ namespace isolux::detail {
 /// Reads `count` numbers x as the floats nearest to slope * x + intercept, worked out in double: what an integer beyond
 /// 2^24 has in its last bits is still there when an offset is taken off. \throw InvalidInput for a result that does not
 /// fit a float; IoError naming `path` if there are fewer numbers; Cancelled
-[[nodiscard]] std::vector<float> decode_scaled(ByteSource& source, const ScalarLayout& layout, std::uint64_t count,
-                                               double slope, double intercept, const std::string& path, const Run& run);
+[[nodiscard]] DecodedValues decode_scaled(ByteSource& source, const ScalarLayout& layout, std::uint64_t count,
+                                          double slope, double intercept, const std::string& path, const Run& run);
 
 }  // namespace isolux::detail

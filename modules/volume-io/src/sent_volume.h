@@ -18,6 +18,7 @@ struct SentVolume {
   Lattice lattice;
   ScalarType stored_type = ScalarType::kFloat32;
   std::uint64_t blocks = 0;  ///< of values, each a SentBlock and its bytes; none where the parent reads them itself
+  std::uint64_t remark_bytes = 0;  ///< of a remark on the volume, which follows
 };
 static_assert(std::is_trivially_copyable_v<SentVolume>, "it goes through a pipe between two copies of one program");
 

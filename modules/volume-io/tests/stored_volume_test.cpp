@@ -81,13 +81,13 @@ TEST(StoredVolume, HashesPartsOfFloatsAsTheWhole) {
 }
 
 TEST(AnyValues, BecomeFloatsWhereTypesMeet) {
-  detail::AnyValues values = std::vector<std::uint8_t>{1, 255};
-  detail::append(values, std::vector<std::uint8_t>{3});
-  EXPECT_EQ(std::get<std::vector<std::uint8_t>>(values), (std::vector<std::uint8_t>{1, 255, 3}));
-  detail::append(values, std::vector<std::int16_t>{-4});
-  detail::append(values, std::vector<std::uint8_t>{5});
-  detail::append(values, std::vector<float>{0.5f});
-  EXPECT_EQ(std::get<std::vector<float>>(values), (std::vector<float>{1, 255, 3, -4, 5, 0.5f}));
+  detail::DecodedValues values{std::vector<std::uint8_t>{1, 255}};
+  detail::append(values, {std::vector<std::uint8_t>{3}});
+  EXPECT_EQ(std::get<std::vector<std::uint8_t>>(values.list), (std::vector<std::uint8_t>{1, 255, 3}));
+  detail::append(values, {std::vector<std::int16_t>{-4}});
+  detail::append(values, {std::vector<std::uint8_t>{5}});
+  detail::append(values, {std::vector<float>{0.5f}});
+  EXPECT_EQ(std::get<std::vector<float>>(values.list), (std::vector<float>{1, 255, 3, -4, 5, 0.5f}));
 }
 
 }  // namespace

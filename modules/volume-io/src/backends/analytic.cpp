@@ -37,9 +37,11 @@ class AnalyticReader final : public VolumeReader {
             fmt::format("{}: '{}' is no number of points an axis; allowed is 2 to 2048", source, digits));
     }
     Volume volume = sample_analytic_field(text.substr(0, colon), n, run);
+    if (options.subtract != 0.0)
+      for (float& value : volume.values.values()) value = float(double(value) - options.subtract);
     if (!options.spacing) return keep_floats(std::move(volume));
     const auto values = volume.values.values();
-    return detail::make_volume(volume.name, volume.lattice(), std::vector<float>(values.begin(), values.end()),
+    return detail::make_volume(volume.name, volume.lattice(), {std::vector<float>(values.begin(), values.end())},
                                volume.stored_type, volume.space, options);
   }
 

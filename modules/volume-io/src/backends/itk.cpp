@@ -149,14 +149,16 @@ class ItkReader final : public VolumeReader {
     detail::run_in_child(
         source, limit, run, [&](const SendBytes& send) { load_itk(source)(what.request, send); },
         [&](detail::ByteSource& received) {
-          volume = detail::receive_volume(received, source, what.checked, options.form, run);
+          volume = detail::receive_volume(received, source, what.checked, options, run);
         });
     if (what.checked.data) {
-      volume.values = detail::read_values(*what.checked.data, volume.header.lattice.count(), options.form, run);
+      volume.values = detail::read_values(*what.checked.data, volume.header.lattice.count(), options, run);
       volume.header.stored_type = detail::voxel_type(*what.checked.data);
     }
-    return detail::make_volume(source, volume.header.lattice, std::move(volume.values), volume.header.stored_type,
-                               std::string(what.space), options);
+    StoredVolume result = detail::make_volume(source, volume.header.lattice, std::move(volume.values),
+                                              volume.header.stored_type, std::string(what.space), options);
+    if (!volume.remark.empty()) result.remarks.push_back(std::move(volume.remark));
+    return result;
   }
 
   [[nodiscard]] std::vector<std::string> files(const std::string& source, const ReadOptions& options) const override {

@@ -167,9 +167,9 @@ class MrcReader final : public VolumeReader {
     const auto order = axis_order(source, header);
     const Lattice lattice = lattice_of(source, header, order, options.spacing.has_value());
     auto values = detail::decode_scalars(*detail::file_source(source, kHeaderBytes + std::uint64_t(extended)),
-                                         {type, header.big_endian()}, count, options.form, source, run);
-    return detail::make_volume(source, lattice, in_xyz_order(std::move(values), lattice, order), type,
-                               "3D-right-handed", options);
+                                         {type, header.big_endian()}, count, options, source, run);
+    values.list = in_xyz_order(std::move(values.list), lattice, order);
+    return detail::make_volume(source, lattice, std::move(values), type, "3D-right-handed", options);
   }
 };
 

@@ -23,7 +23,7 @@ class NiftiReader final : public VolumeReader {
   [[nodiscard]] StoredVolume read(const std::string& source, const ReadOptions& options,
                                   const Run& run) const override {
     const detail::NiftiHeader header = detail::read_nifti_header(source);
-    auto values = detail::read_values(header.data, header.lattice.count(), options.form, run);
+    auto values = detail::read_values(header.data, header.lattice.count(), options, run);
     return detail::make_volume(source, header.lattice, std::move(values), detail::voxel_type(header.data),
                                "left-posterior-superior", options);
   }

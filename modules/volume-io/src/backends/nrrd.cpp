@@ -52,7 +52,7 @@ class NrrdReader final : public VolumeReader {
     const detail::NrrdHeader header = detail::read_nrrd_header(source, options);
     const auto axes = spatial_axes(header);
     detail::NrrdFrame frame = detail::nrrd_frame(header, axes);
-    return detail::make_volume(source, frame.lattice, detail::read_nrrd_values(header, options.form, run),
+    return detail::make_volume(source, frame.lattice, detail::read_nrrd_values(header, options, run),
                                header.layout.type, std::move(frame.space), options);
   }
 

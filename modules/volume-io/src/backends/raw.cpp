@@ -40,7 +40,7 @@ class RawReader final : public VolumeReader {
       throw IoError(fmt::format("{}: {}x{}x{} voxels of {} are {} bytes, {} found", source, sizes[0], sizes[1],
                                 sizes[2], scalar_type_name(layout->type), count * width, found));
     auto values = detail::decode_scalars(*detail::file_source(source, 0), {layout->type, layout->big_endian}, count,
-                                         options.form, source, run);
+                                         options, source, run);
     return detail::make_volume(source, {.size = layout->size, .frame = {}}, std::move(values), layout->type,
                                "3D-right-handed", options);
   }

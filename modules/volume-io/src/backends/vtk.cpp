@@ -21,7 +21,7 @@ class VtkReader final : public VolumeReader {
   [[nodiscard]] StoredVolume read(const std::string& source, const ReadOptions& options,
                                   const Run& run) const override {
     const detail::LegacyVtk header = detail::read_legacy_vtk_header(source);
-    return detail::make_volume(source, header.lattice, detail::read_legacy_vtk_values(header, options.form, run),
+    return detail::make_volume(source, header.lattice, detail::read_legacy_vtk_values(header, options, run),
                                header.data.layout.type, "3D-right-handed", options);
   }
 };

@@ -7,6 +7,7 @@
 #include <span>
 #include <string>
 #include <variant>
+#include <vector>
 
 namespace isolux {
 
@@ -31,6 +32,8 @@ struct Volume {
   std::string name;    ///< the file's path or `gen:` text, for messages and file headers
   ScalarType stored_type = ScalarType::kFloat32;  ///< what the file held before conversion to float
   std::string space = "left-posterior-superior";  ///< NRRD's name of the world space
+  bool rounded = false;                           ///< a value of the file is no float: the nearest one is here
+  std::vector<std::string> remarks{};             ///< what its reader has to say of it, each a line that names the file
 
   [[nodiscard]] const Lattice& lattice() const { return values.lattice(); }
 };
@@ -43,6 +46,8 @@ struct StoredVolume {
   std::string name;
   ScalarType stored_type = ScalarType::kFloat32;
   std::string space = "left-posterior-superior";
+  bool rounded = false;
+  std::vector<std::string> remarks{};
 
   [[nodiscard]] const Lattice& lattice() const;
 };

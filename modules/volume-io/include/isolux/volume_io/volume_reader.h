@@ -28,11 +28,12 @@ enum class VoxelForm : std::uint8_t {
 
 /// How to read a volume.
 struct ReadOptions {
-  std::optional<RawLayout> raw;         ///< dims, type and endianness of a headerless file
-  bool big_endian = false;              ///< of a headerless file whose name says the rest
-  std::optional<Vec3> spacing;          ///< replaces the file's spacing, world units; needed where a format has none
-  bool allow_external_data = false;     ///< a header may name a data file outside its own folder
-  VoxelForm form = VoxelForm::kFloats;  ///< set by read_volume and read_stored_volume
+  std::optional<RawLayout> raw;  ///< dims, type and endianness of a headerless file
+  bool big_endian = false;       ///< of a headerless file whose name says the rest
+  std::optional<Vec3> spacing;   ///< replaces the file's spacing, world units; needed where a format has none
+  double subtract = 0.0;  ///< taken off each value before it becomes a float; what is left is float32 in any file
+  bool allow_external_data = false;                         ///< a header may name a data file outside its own folder
+  VoxelForm form = VoxelForm::kFloats;                      ///< set by read_volume and read_stored_volume
   std::map<std::string, Settings, std::less<>> settings{};  ///< options of readers, by their names
 };
 
