@@ -1,5 +1,7 @@
 #include "byte_source.h"
 
+#include "files.h"
+
 #include <fmt/format.h>
 #include <isolux/core/error.h>
 #include <zlib.h>
@@ -101,6 +103,15 @@ std::unique_ptr<ByteSource> file_source(const std::string& path, std::uint64_t o
 
 std::unique_ptr<ByteSource> gzip_source(const std::string& path, std::uint64_t offset) {
   return std::make_unique<GzipSource>(path, offset);
+}
+
+bool is_gzip(const std::string& path) { return first_bytes(path, 2) == "\x1F\x8B"; }
+
+std::string first_inflated(const std::string& path, std::size_t count) {
+  if (!is_gzip(path)) return first_bytes(path, count);
+  std::string bytes(count, '\0');
+  bytes.resize(gzip_source(path, 0)->read(std::as_writable_bytes(std::span(bytes))));
+  return bytes;
 }
 
 void skip_bytes(ByteSource& source, std::uint64_t count, const std::string& path) {

@@ -24,6 +24,13 @@ class ByteSource {
 /// gzip does. \throw IoError, also from read() for damaged data and for anything else behind them.
 [[nodiscard]] std::unique_ptr<ByteSource> gzip_source(const std::string& path, std::uint64_t offset);
 
+/// Whether a file begins as gzip does. Never throws.
+[[nodiscard]] bool is_gzip(const std::string& path);
+
+/// Up to `count` bytes from the start of a file, of a gzip file those that it inflates to. \throw IoError for damaged
+/// gzip
+[[nodiscard]] std::string first_inflated(const std::string& path, std::size_t count);
+
 /// Reads and drops bytes. \throw IoError naming `path` if there are fewer.
 void skip_bytes(ByteSource& source, std::uint64_t count, const std::string& path);
 

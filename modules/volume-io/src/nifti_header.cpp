@@ -23,16 +23,6 @@ constexpr std::size_t kHeader2 = 540;
 // spoiled.
 constexpr double kMostStretch = 10.0;
 
-bool is_gzip(const std::string& path) { return first_bytes(path, 2) == "\x1F\x8B"; }
-
-// The first bytes of what the file holds, inflated if need be.
-std::string header_bytes(const std::string& path) {
-  if (!is_gzip(path)) return first_bytes(path, kHeader2);
-  std::string bytes(kHeader2, '\0');
-  bytes.resize(gzip_source(path, 0)->read(std::as_writable_bytes(std::span(bytes))));
-  return bytes;
-}
-
 struct Version {
   bool second = false;
   bool big_endian = false;
@@ -228,7 +218,7 @@ std::uint64_t data_offset(const std::string& path, const Fields& f, bool second)
 
 bool is_nifti(const std::string& path) {
   try {
-    return version(header_bytes(path)).has_value();
+    return version(first_inflated(path, kHeader2)).has_value();
   } catch (const Error&) {
     return false;
   }
@@ -236,7 +226,7 @@ bool is_nifti(const std::string& path) {
 
 NiftiHeader read_nifti_header(const std::string& path) {
   (void)require_file(path);
-  const std::string bytes = header_bytes(path);
+  const std::string bytes = first_inflated(path, kHeader2);
   const auto found = version(bytes);
   if (!found)
     throw InvalidInput(

@@ -1,16 +1,18 @@
+#include "../data_place.h"
 #include "../files.h"
 #include "../header_bytes.h"
 #include "../make_volume.h"
-#include "../scalars.h"
 
 #include <fmt/format.h>
 #include <isolux/core/error.h>
 #include <isolux/volume_io/volume_reader.h>
 
 #include <array>
+#include <bit>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <numbers>
+#include <optional>
 
 namespace isolux {
 namespace {
@@ -32,20 +34,84 @@ HeaderBytes ordered(std::string bytes) {
   return {std::move(bytes), mode < 0 || mode > 255};
 }
 
-ScalarType scalar_type(const std::string& path, int mode) {
+/// How voxels lie in the file, and what is to be said of it.
+struct Mode {
+  ScalarType type = ScalarType::kFloat32;
+  bool halves = false;  ///< the bits of type kUint16 are those of float16
+  std::string remark;
+};
+
+// Bytes have a sign since MRC2014. Before that programs differed: IMOD says itself what it wrote ("MRC File Format",
+// imodStamp and imodFlags), of others DMIN and DMAX tell.
+Mode mode_of_bytes(const std::string& path, const HeaderBytes& header) {
+  constexpr std::int32_t kImodStamp = 1146047817;
+  constexpr std::int32_t kSigned = 1;
+  if (header.get<std::int32_t>(152) == kImodStamp)
+    return {(header.get<std::int32_t>(156) & kSigned) != 0 ? ScalarType::kInt8 : ScalarType::kUint8, false, {}};
+  const auto low = header.get<float>(76);
+  const auto high = header.get<float>(80);
+  if (!(low >= 0.0f && high > 127.0f && high <= 255.0f)) return {ScalarType::kInt8, false, {}};
+  return {ScalarType::kUint8, false,
+          fmt::format("{}: MRC mode 0 is of signed bytes, and the header says values from {} to {}: they are read as "
+                      "unsigned",
+                      path, low, high)};
+}
+
+Mode mode_of(const std::string& path, const HeaderBytes& header) {
+  const auto mode = header.get<std::int32_t>(12);
   switch (mode) {
     case 0:
-      return ScalarType::kInt8;
+      return mode_of_bytes(path, header);
     case 1:
-      return ScalarType::kInt16;
+      return {ScalarType::kInt16, false, {}};
     case 2:
-      return ScalarType::kFloat32;
+      return {ScalarType::kFloat32, false, {}};
     case 6:
-      return ScalarType::kUint16;
+      return {ScalarType::kUint16, false, {}};
+    case 12:
+      return {ScalarType::kUint16, true, {}};
     default:
-      throw InvalidInput(
-          fmt::format("{}: MRC mode {}: supported are 0 (int8), 1 (int16), 2 (float32) and 6 (uint16)", path, mode));
+      throw InvalidInput(fmt::format(
+          "{}: MRC mode {}: supported are 0 (int8), 1 (int16), 2 (float32), 6 (uint16) and 12 (float16)", path, mode));
   }
+}
+
+// IEEE 754's binary16: a sign, 5 bits of exponent, 10 of mantissa.
+float float_of_half(std::uint16_t bits) {
+  const int exponent = bits >> 10 & 31;
+  const int mantissa = bits & 1023;
+  float size = std::ldexp(float(exponent > 0 ? mantissa + 1024 : mantissa), std::max(exponent, 1) - 25);
+  if (exponent == 31) size = mantissa == 0 ? std::numeric_limits<float>::infinity() : std::nanf("");
+  return (bits & 0x8000) != 0 ? -size : size;
+}
+
+detail::DecodedValues read_halves(const detail::DataPlace& place, std::uint64_t count, const ReadOptions& options,
+                                  const Run& run) {
+  ReadOptions as_bits = options;
+  as_bits.form = VoxelForm::kStored;
+  as_bits.subtract = 0.0;
+  const auto bits = std::get<std::vector<std::uint16_t>>(detail::read_values(place, count, as_bits, run).list);
+  std::vector<float> values;
+  values.reserve(count);
+  for (const std::uint16_t half : bits) values.push_back(float(double(float_of_half(half)) - options.subtract));
+  return {std::move(values), options.subtract != 0.0};
+}
+
+// Stacks lie in a file as one volume does (Cheng et al., section 3.2): NZ is of all, MZ of one.
+void require_one_volume(const std::string& path, const HeaderBytes& header, bool spacing_given) {
+  const auto group = header.get<std::int32_t>(88);
+  const auto sections = header.get<std::int32_t>(8);
+  const auto of_each = header.get<std::int32_t>(36);
+  constexpr std::int32_t kVolumeStack = 401;
+  constexpr std::int32_t kLastStack = 630;
+  if (group >= kVolumeStack && group <= kLastStack && of_each > 0 && sections > of_each)
+    throw InvalidInput(fmt::format("{}: a stack of {} volumes of {} sections (ISPG {}): a file of one is needed", path,
+                                   double(sections) / double(of_each), of_each, group));
+  if (group == 0 && of_each == 1 && sections > 1 && !spacing_given)
+    throw InvalidInput(
+        fmt::format("{}: a stack of {} images (ISPG 0, MZ 1), not a volume: --spacing reads them as the "
+                    "sections of one",
+                    path, sections));
 }
 
 // The unit cell: its edges a, b, c in world space, a along x and b in the plane z = 0, as crystallographers have it.
@@ -133,6 +199,32 @@ detail::AnyValues in_xyz_order(detail::AnyValues values, const Lattice& lattice,
   return std::visit([&](const auto& list) -> detail::AnyValues { return sort_axes(list, lattice, order); }, values);
 }
 
+bool is_mrc(const std::string& path) {
+  try {
+    return has_map_mark(detail::first_inflated(path, kHeaderBytes));
+  } catch (const Error&) {
+    return false;
+  }
+}
+
+/// \throw IoError unless the file holds as many voxels as its header says, as far as its size tells
+detail::DataPlace data_place(const std::string& path, const HeaderBytes& header, ScalarType type) {
+  const std::array<std::int64_t, 3> sizes = {header.get<std::int32_t>(0), header.get<std::int32_t>(4),
+                                             header.get<std::int32_t>(8)};
+  const std::uint64_t count = detail::checked_count(path, sizes, bytes_per_scalar(type));
+  const auto extended = header.get<std::int32_t>(92);
+  const std::uint64_t begin = kHeaderBytes + std::uint64_t(std::max(extended, 0));
+  const std::uint64_t needed = begin + count * bytes_per_scalar(type);
+  detail::DataPlace place{.file = path, .compressed = detail::is_gzip(path), .layout = {type, header.big_endian()}};
+  const std::uint64_t found = place.compressed ? needed : detail::require_file(path);
+  if (extended < 0 || needed != found)
+    throw IoError(fmt::format("{}: {}x{}x{} voxels behind an extended header of {} bytes need {} bytes, {} found", path,
+                              sizes[0], sizes[1], sizes[2], extended, needed, found));
+  (place.compressed ? place.skipped : place.offset) = begin;
+  detail::require_room(place, count);
+  return place;
+}
+
 /// MRC and CCP4 maps (Cheng et al., "MRC2014", J. Struct. Biol. 192, 2015): axes in any order, cells of any angles.
 /// Immutable, callable from many threads.
 class MrcReader final : public VolumeReader {
@@ -141,35 +233,32 @@ class MrcReader final : public VolumeReader {
   explicit MrcReader(const Options& /*options*/) {}
 
   [[nodiscard]] int claims(const std::string& source, const ReadOptions& /*options*/) const override {
-    if (has_map_mark(detail::first_bytes(source, kHeaderBytes))) return 2;
-    for (const auto* extension : {".mrc", ".map", ".ccp4", ".rec"}) {
-      if (detail::has_extension(source, extension)) return 1;
+    if (is_mrc(source)) return 2;
+    for (const std::string extension : {".mrc", ".map", ".ccp4", ".rec"}) {
+      if (detail::has_extension(source, extension) || detail::has_extension(source, extension + ".gz")) return 1;
     }
     return 0;
   }
 
   [[nodiscard]] StoredVolume read(const std::string& source, const ReadOptions& options,
                                   const Run& run) const override {
-    const std::uint64_t found = detail::require_file(source);
-    std::string bytes = detail::first_bytes(source, kHeaderBytes);
+    (void)detail::require_file(source);
+    std::string bytes = detail::first_inflated(source, kHeaderBytes);
     if (!has_map_mark(bytes))
       throw InvalidInput(fmt::format("{}: no MRC file: 'MAP' is missing at byte 208 of the header", source));
     const HeaderBytes header = ordered(std::move(bytes));
-    const ScalarType type = scalar_type(source, header.get<std::int32_t>(12));
-    const std::array<std::int64_t, 3> sizes = {header.get<std::int32_t>(0), header.get<std::int32_t>(4),
-                                               header.get<std::int32_t>(8)};
-    const std::uint64_t count = detail::checked_count(source, sizes, bytes_per_scalar(type));
-    const auto extended = header.get<std::int32_t>(92);
-    const std::uint64_t needed = kHeaderBytes + std::uint64_t(std::max(extended, 0)) + count * bytes_per_scalar(type);
-    if (extended < 0 || needed != found)
-      throw IoError(fmt::format("{}: {}x{}x{} voxels behind an extended header of {} bytes need {} bytes, {} found",
-                                source, sizes[0], sizes[1], sizes[2], extended, needed, found));
+    const Mode mode = mode_of(source, header);
+    const detail::DataPlace place = data_place(source, header, mode.type);
+    require_one_volume(source, header, options.spacing.has_value());
     const auto order = axis_order(source, header);
     const Lattice lattice = lattice_of(source, header, order, options.spacing.has_value());
-    auto values = detail::decode_scalars(*detail::file_source(source, kHeaderBytes + std::uint64_t(extended)),
-                                         {type, header.big_endian()}, count, options, source, run);
+    auto values = mode.halves ? read_halves(place, lattice.count(), options, run)
+                              : detail::read_values(place, lattice.count(), options, run);
     values.list = in_xyz_order(std::move(values.list), lattice, order);
-    return detail::make_volume(source, lattice, std::move(values), type, "3D-right-handed", options);
+    StoredVolume volume = detail::make_volume(
+        source, lattice, std::move(values), mode.halves ? ScalarType::kFloat32 : mode.type, "3D-right-handed", options);
+    if (!mode.remark.empty()) volume.remarks.push_back(mode.remark);
+    return volume;
   }
 };
 
@@ -177,7 +266,7 @@ class MrcReader final : public VolumeReader {
 
 namespace backends {
 void mrc(Registry<VolumeReader>& registry) {
-  registry.add<MrcReader>("mrc", "MRC and CCP4 maps (.mrc, .map), any order of axes and any cell angles");
+  registry.add<MrcReader>("mrc", "MRC and CCP4 maps (.mrc, .map, also .gz), any order of axes and any cell angles");
 }
 }  // namespace backends
 
