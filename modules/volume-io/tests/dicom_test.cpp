@@ -44,6 +44,42 @@ TEST_F(Itk, StacksSlicesOfOnePlaceAlongTheirNormal) {
   EXPECT_EQ(read_volume(folder_.file("."), kSpaced).lattice().frame.axes[2], Vec3(0, 0, 4));
 }
 
+// Which files are to blame is seen from the gaps, not from the places in an even stack.
+TEST_F(Itk, NamesTheDicomSlicesBetweenWhichAGapIsWrong) {
+  using ::testing::AllOf;
+  const auto slice = [&](const std::string& name, const std::string& z) {
+    (void)folder_.write(name,
+                        test::dicom_sample({.position = "10\\20\\" + z, .series = "1", .instance = name, .first = 0}));
+  };
+  const auto why = [&] {
+    const std::string error = test::reading_error(folder_.file("."));
+    const Volume spaced = read_volume(folder_.file("."), kSpaced);
+    EXPECT_EQ(spaced.remarks.size(), 1u);
+    EXPECT_THAT(spaced.remarks[0], HasSubstr("4 mm apart all the same"));
+    const std::string reason = error.substr(error.find("spaced: "), error.find(';') - error.find("spaced: "));
+    EXPECT_THAT(spaced.remarks[0], HasSubstr(reason));
+    return reason;
+  };
+  const auto pair = [&](const char* a, const char* b) {
+    return folder_.file("./") + a + " and " + folder_.file("./") + b;
+  };
+  for (int i = 1; i <= 5; ++i) slice(std::to_string(i), std::to_string(30 + 4 * i));
+  EXPECT_TRUE(read_volume(folder_.file("."), kSpaced).remarks.empty());
+  slice("5", "54");
+  EXPECT_THAT(why(), AllOf(HasSubstr("a slice is missing between " + pair("4", "5")), HasSubstr("8 mm apart"),
+                           HasSubstr("usual gap is 4 mm")));
+  slice("5", "58");
+  EXPECT_THAT(why(), HasSubstr("2 slices are missing between " + pair("4", "5")));
+  slice("5", "42");
+  EXPECT_THAT(why(), HasSubstr("two slices at the same place: " + pair("3", "5")));
+  slice("5", "51");
+  slice("1", "35");
+  EXPECT_THAT(why(), AllOf(HasSubstr("smallest gap is 3 mm, between " + pair("1", "2")),
+                           HasSubstr("largest 5 mm, between " + pair("4", "5"))));
+  for (int i = 1; i <= 5; ++i) slice(std::to_string(i), "30");
+  EXPECT_THAT(why(), HasSubstr("all 5 lie at one place"));
+}
+
 TEST_F(Itk, RefusesUnevenMixedAndBrokenDicomFolders) {
   const auto slice = [&](const std::string& name, const std::string& position, const std::string& series = "1") {
     (void)folder_.write(name,

@@ -134,12 +134,14 @@ std::vector<Slice> dicom_slices(const std::string& source, const std::vector<std
 void send_dicom(const std::string& source, const std::vector<std::string>& files, std::optional<double> gap,
                 const SendBytes& send) {
   auto slices = dicom_slices(source, files);
-  const Lattice lattice = stack_slices(source, slices, gap);
+  const SliceStack stack = stack_slices(source, slices, gap);
   const bool one_type =
       std::all_of(slices.begin(), slices.end(), [&](const Slice& s) { return s.type == slices[0].type; });
-  send_value(send, SentVolume{.lattice = lattice,
+  send_value(send, SentVolume{.lattice = stack.lattice,
                               .stored_type = one_type ? slices.front().type : ScalarType::kFloat32,
-                              .blocks = slices.size()});
+                              .blocks = slices.size(),
+                              .remark_bytes = stack.remark.size()});
+  if (!stack.remark.empty()) send(std::as_bytes(std::span(stack.remark)));
   for (const auto& slice : slices) send_pixels(slice.path, *open<itk::GDCMImageIO>(slice.path), send);
 }
 
