@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <map>
 #include <optional>
 
@@ -125,7 +126,32 @@ std::vector<std::string> read_lattice(const std::string& path, VtkHeader& header
   return words;
 }
 
-DecodedValues read_text(const LegacyVtk& header, const ReadOptions& options, const Run& run) {
+// The attributes that may stand behind the values, as the file names them; see LegacyVtk.
+std::string attribute_at(const std::string& path, std::uint64_t offset) {
+  static constexpr std::array<std::string_view, 9> kAttributes = {
+      "scalars",  "color_scalars",       "vectors", "normals",  "tensors",
+      "tensors6", "texture_coordinates", "field",   "cell_data"};
+  std::string bytes(kLongestVtkHeader, '\0');
+  bytes.resize(file_source(path, offset)->read(std::as_writable_bytes(std::span(bytes))));
+  auto words = plain_words(bytes);
+  // What VTK notes of the values before, up to an empty line.
+  const auto is_attribute = [](const std::string& word) {
+    return std::find(kAttributes.begin(), kAttributes.end(), lower_case(word)) != kAttributes.end();
+  };
+  auto at = words.begin();
+  if (at != words.end() && lower_case(*at) == "metadata") at = std::find_if(at, words.end(), is_attribute);
+  if (at == words.end() || !is_attribute(*at)) return "";
+  return at + 1 == words.end() ? excerpt(*at) : excerpt(*at + " " + *(at + 1));
+}
+
+// As binary data, text may have NaN and infinities among floats.
+bool is_number(ScalarType type, const std::string& word) {
+  if (reads_as(type, word)) return true;
+  const auto value = parse_real(word);
+  return (type == ScalarType::kFloat32 || type == ScalarType::kFloat64) && value && !std::isfinite(*value);
+}
+
+VtkValues read_text(const LegacyVtk& header, const ReadOptions& options, const Run& run) {
   const std::uint64_t count = header.lattice.count();
   const std::string& path = header.data.file;
   NumberText text(path, header.data.offset, " \n\r\t\f\v");
@@ -136,15 +162,15 @@ DecodedValues read_text(const LegacyVtk& header, const ReadOptions& options, con
     const std::string& word = text.next();
     if (word.empty())
       throw IoError(fmt::format("{}: {} numbers of data expected, {} found", path, count, values.size()));
-    if (!reads_as(header.data.layout.type, word))
-      throw InvalidInput(fmt::format("{}: '{}', value {} of the data, is no finite {}", path, excerpt(word),
-                                     values.size(), scalar_type_name(header.data.layout.type)));
+    if (!is_number(header.data.layout.type, word))
+      throw InvalidInput(fmt::format("{}: '{}', value {} of the data, is no {}", path, excerpt(word), values.size(),
+                                     scalar_type_name(header.data.layout.type)));
     const double value = text.number() - options.subtract;
     values.push_back(float(value));
-    rounded |= double(values.back()) != value;
+    rounded |= double(values.back()) != value && !std::isnan(value);
     if (values.size() % 65536 == 0) throw_if_stopped(run);
   }
-  return {std::move(values), rounded};
+  return {{std::move(values), rounded}, attribute_at(path, text.offset())};
 }
 
 }  // namespace
@@ -169,6 +195,7 @@ LegacyVtk read_legacy_vtk_header(const std::string& path) {
   const auto scalars = read_lattice(path, header, result.lattice);
   if (scalars.size() < 3 || scalars.size() > 4 || (scalars.size() == 4 && scalars[3] != "1"))
     throw InvalidInput(fmt::format("{}: VTK SCALARS need a name, a type and one component", path));
+  result.name = excerpt(scalars[1]);
   if (header.line().front() != "lookup_table")
     throw InvalidInput(fmt::format("{}: VTK SCALARS without a LOOKUP_TABLE line", path));
   result.data = {
@@ -180,9 +207,12 @@ LegacyVtk read_legacy_vtk_header(const std::string& path) {
   return result;
 }
 
-DecodedValues read_legacy_vtk_values(const LegacyVtk& header, const ReadOptions& options, const Run& run) {
+VtkValues read_legacy_vtk_values(const LegacyVtk& header, const ReadOptions& options, const Run& run) {
   if (header.text) return read_text(header, options, run);
-  return read_values(header.data, header.lattice.count(), options, run);
+  const DataPlace& place = header.data;
+  const std::uint64_t count = header.lattice.count();
+  return {read_values(place, count, options, run),
+          attribute_at(place.file, place.offset + count * bytes_per_scalar(place.layout.type))};
 }
 
 }  // namespace isolux::detail

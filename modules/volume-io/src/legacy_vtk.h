@@ -14,6 +14,12 @@ struct LegacyVtk {
   Lattice lattice;
   DataPlace data;
   bool text = false;  ///< the values are written as numbers with blanks between
+  std::string name;   ///< of the scalars, in lower case
+};
+
+struct VtkValues {
+  DecodedValues values;
+  std::string left_out;  ///< the attribute behind them, as its line names it ("VECTORS v"); empty if there is none
 };
 
 /// Tells legacy VTK by its content.
@@ -24,7 +30,7 @@ struct LegacyVtk {
 [[nodiscard]] LegacyVtk read_legacy_vtk_header(const std::string& path);
 
 /// Further attributes may follow the values: the format says so. \throw IoError, InvalidInput, Cancelled; of text also
-/// for what is no finite number of its type
-[[nodiscard]] DecodedValues read_legacy_vtk_values(const LegacyVtk& header, const ReadOptions& options, const Run& run);
+/// for what is no number of its type
+[[nodiscard]] VtkValues read_legacy_vtk_values(const LegacyVtk& header, const ReadOptions& options, const Run& run);
 
 }  // namespace isolux::detail

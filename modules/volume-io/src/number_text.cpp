@@ -23,13 +23,14 @@ std::optional<double> parse_real(std::string_view text) {
 }
 
 NumberText::NumberText(const std::string& path, std::uint64_t offset, std::string_view separators)
-    : path_(path), file_(path, std::ios::binary), separators_(separators) {
+    : path_(path), file_(path, std::ios::binary), separators_(separators), offset_(offset) {
   file_.seekg(std::streamoff(offset));
 }
 
 const std::string& NumberText::next() {
   word_.clear();
   for (int c = file_.get(); c != std::ifstream::traits_type::eof(); c = file_.get()) {
+    ++offset_;
     const bool between = separators_.find(char(c)) != std::string_view::npos;
     if (between && !word_.empty()) break;
     if (!between) word_ += char(c);

@@ -21,6 +21,8 @@ class NumberText {
   /// The last word as a number that float holds, NaN and infinities among them. \throw InvalidInput naming the file,
   /// the word and its place among them, counted from 0
   [[nodiscard]] double number() const;
+  /// The place in the file behind the last word and the separator that ends it.
+  [[nodiscard]] std::uint64_t offset() const { return offset_; }
 
  private:
   std::string path_;
@@ -28,6 +30,7 @@ class NumberText {
   std::string_view separators_;
   std::string word_;
   std::uint64_t words_ = 0;
+  std::uint64_t offset_ = 0;
 };
 
 }  // namespace isolux::detail

@@ -2,6 +2,7 @@
 #include "../legacy_vtk.h"
 #include "../make_volume.h"
 
+#include <fmt/format.h>
 #include <isolux/volume_io/volume_reader.h>
 
 namespace isolux {
@@ -21,8 +22,13 @@ class VtkReader final : public VolumeReader {
   [[nodiscard]] StoredVolume read(const std::string& source, const ReadOptions& options,
                                   const Run& run) const override {
     const detail::LegacyVtk header = detail::read_legacy_vtk_header(source);
-    return detail::make_volume(source, header.lattice, detail::read_legacy_vtk_values(header, options, run),
-                               header.data.layout.type, "3D-right-handed", options);
+    detail::VtkValues read = detail::read_legacy_vtk_values(header, options, run);
+    StoredVolume volume = detail::make_volume(source, header.lattice, std::move(read.values), header.data.layout.type,
+                                              "3D-right-handed", options);
+    if (!read.left_out.empty())
+      volume.remarks.push_back(fmt::format("{}: its first SCALARS, '{}', are read; {} and what follows is left out",
+                                           source, header.name, read.left_out));
+    return volume;
   }
 };
 
