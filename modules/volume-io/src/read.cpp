@@ -1,3 +1,4 @@
+#include "byte_source.h"
 #include "files.h"
 
 #include <fmt/format.h>
@@ -11,8 +12,22 @@ namespace isolux {
 namespace {
 
 constexpr std::string_view kFormats =
-    "gen:NAME[:N], NRRD (.nrrd, .nhdr), NIfTI (.nii, .nii.gz), MetaImage (.mha, .mhd), MRC (.mrc, .map), legacy VTK "
-    "(.vtk), TIFF stacks, folders of DICOM slices, and name_WxHxD_type.raw";
+    "gen:NAME[:N], NRRD (.nrrd, .nhdr), NIfTI (.nii, .nii.gz), MetaImage (.mha, .mhd), MRC (.mrc, .map, also .gz), "
+    "legacy VTK (.vtk), TIFF stacks, folders of DICOM slices, and name_WxHxD_type.raw";
+
+/// \throw InvalidInput, IoError: nobody claims the source
+[[noreturn]] void refuse(const std::string& source, const std::string& missing) {
+  if (!detail::is_directory(source)) (void)detail::require_file(source);
+  if (detail::is_gzip(source))
+    throw InvalidInput(fmt::format(
+        "{}: gzip of no volume that can be read: known are gzip of NIfTI (.nii.gz) and MRC (.mrc.gz, .map.gz); "
+        "unpack what is something else",
+        source));
+  throw InvalidInput(
+      fmt::format("{}: not a volume that can be read: known are {}{}; --dims and --type read any other file as "
+                  "headerless",
+                  source, kFormats, missing));
+}
 
 /// \throw InvalidInput, IoError if nobody claims the source
 std::unique_ptr<VolumeReader> reader_of(const std::string& source, const ReadOptions& options,
@@ -34,10 +49,7 @@ std::unique_ptr<VolumeReader> reader_of(const std::string& source, const ReadOpt
     best = std::move(reader);
     best_claim = claim;
   }
-  if (best == nullptr) {
-    if (!detail::is_directory(source)) (void)detail::require_file(source);
-    throw InvalidInput(fmt::format("{}: not a volume that can be read: known are {}{}", source, kFormats, missing));
-  }
+  if (best == nullptr) refuse(source, missing);
   return best;
 }
 

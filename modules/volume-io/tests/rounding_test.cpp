@@ -76,5 +76,12 @@ TEST_F(Rounding, OffsetsAreTakenOffEveryFormat) {
   }
 }
 
+TEST(Reading, SaysHowFilesOfNoFormatAreRead) {
+  const test::TemporaryFolder folder;
+  EXPECT_THAT(test::reading_error(folder.write("a.bin", "1234")), HasSubstr("--dims and --type read any other file"));
+  EXPECT_THAT(test::reading_error(folder.write("a.bin.gz", test::gzipped("1234"))),
+              HasSubstr("known are gzip of NIfTI (.nii.gz) and MRC"));
+}
+
 }  // namespace
 }  // namespace isolux
