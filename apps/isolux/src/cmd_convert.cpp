@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "commands.h"
+#include "rounding.h"
 #include "volume_options.h"
 
 namespace isolux {
@@ -18,6 +19,7 @@ namespace {
 
 /// Volumes are kept in floats, which do not hold all numbers of the wider types.
 void warn_of_rounding(const StoredVolume& volume, const Session& session) {
+  if (rounded_to_few(volume)) return;   // reading has said so
   constexpr float kAllWhole = 0x1p24f;  // every whole number up to it is a float
   const std::string type(scalar_type_name(volume.stored_type));
   if (volume.stored_type == ScalarType::kFloat64)

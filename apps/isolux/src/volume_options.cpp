@@ -4,13 +4,14 @@
 #include <isolux/volume_io/read.h>
 #include <isolux/volume_io/scalar_type.h>
 
-#include <cmath>
+#include <limits>
 #include <optional>
-#include <variant>
 
 #include "bake_options.h"
 #include "memory.h"
+#include "missing_values.h"
 #include "parse.h"
+#include "rounding.h"
 #include "usage.h"
 
 namespace isolux {
@@ -31,6 +32,14 @@ void VolumeOptions::add_to(CLI::App& command, Session& session) {
       ->type_name("ORDER");
   command.add_option("--replace-nonfinite", replacement_, "value for voxels that are infinite or not a number")
       ->check(finite_number())
+      ->type_name("VALUE");
+  command.add_option("--nodata", nodata_, "value of the file that stands for none: such voxels are no numbers")
+      ->check(finite_number())
+      ->type_name("VALUE");
+  command
+      .add_option("--subtract", subtract_,
+                  "taken off every value of the file before it is rounded to float32: for large offsets in float64")
+      ->check(number_within(-std::numeric_limits<double>::max(), std::numeric_limits<double>::max()))
       ->type_name("VALUE");
   command.add_option("--set-reader", set_, "an option of a reader: NAME.key=value, such as itk.time_limit=3600")
       ->check(key_and_value())
@@ -66,6 +75,7 @@ ReadOptions VolumeOptions::read_options(const Session& session) const {
       throw UsageError("--spacing = '" + spacing_ + "': allowed are numbers above 0");
     options.spacing = Vec3(s[0], s[1], s[2]);
   }
+  if (!subtract_.empty()) options.subtract = parse_numbers("--subtract", subtract_, 1)[0];
   return options;
 }
 
@@ -78,12 +88,10 @@ StoredVolume VolumeOptions::read_in(VoxelForm form, Session& session) const {
     return keep_floats(read_volume(source_, options, session.run, session.stages.readers));
   };
   StoredVolume volume = session.timed("read", [&] { return with_memory_for("the values of " + source_, read); });
-  auto* floats = std::get_if<Grid<float>>(&volume.values);
-  if (replacement && floats != nullptr) {
-    for (float& voxel : floats->values()) {
-      if (!std::isfinite(voxel)) voxel = *replacement;
-    }
-  }
+  for (const std::string& remark : volume.remarks) session.warn(remark);
+  if (!nodata_.empty()) mark_missing(volume, parse_numbers("--nodata", nodata_, 1)[0], options.subtract, replacement);
+  warn_of_few_values(volume, session);
+  if (replacement) replace_nonfinite(volume, *replacement);
   return volume;
 }
 

@@ -16,8 +16,8 @@ class VolumeOptions {
  public:
   void add_to(CLI::App& command, Session& session);
   [[nodiscard]] const std::string& source() const { return source_; }
-  /// As in the file and in its type, with --replace-nonfinite applied: else voxels may be infinite or not numbers; axes
-  /// may be 1 wide. \throw UsageError, IoError, InvalidInput
+  /// As in the file and in its type, with --subtract, --nodata and --replace-nonfinite applied: else voxels may be
+  /// infinite or not numbers; axes may be 1 wide. Warns of what reading lost. \throw UsageError, IoError, InvalidInput
   [[nodiscard]] StoredVolume read_as_is(Session& session) const;
   /// The same, fit for surfaces (require_usable).
   [[nodiscard]] StoredVolume read_stored(Session& session) const;
@@ -34,6 +34,8 @@ class VolumeOptions {
   std::string spacing_;
   std::string endian_ = "little";
   std::string replacement_;
+  std::string nodata_;
+  std::string subtract_;
   std::vector<std::string> set_;
   bool allow_external_ = false;
 };

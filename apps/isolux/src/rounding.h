@@ -1,0 +1,16 @@
+#pragma once
+
+#include <isolux/core/volume.h>
+
+#include "session.h"
+
+namespace isolux {
+
+/// Whether so much was lost when a file's values became floats that surfaces show it: those between the smallest and
+/// the largest are few.
+[[nodiscard]] bool rounded_to_few(const StoredVolume& volume);
+
+/// Says so, and what helps.
+void warn_of_few_values(const StoredVolume& volume, const Session& session);
+
+}  // namespace isolux

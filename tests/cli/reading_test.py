@@ -1,0 +1,68 @@
+"""What commands say of a volume that was read, and the words that change its values."""
+import math
+import struct
+import unittest
+
+from support import CommandLineTest, nrrd_header
+
+
+class Offsets(CommandLineTest):
+    """Volumes are floats: of small differences on a large offset little is left."""
+
+    def setUp(self):
+        super().setUp()
+        self.values = [101325 + 0.05 * math.sin(i / 10) for i in range(64)]
+        self.write("p_4x4x4_float64.raw", struct.pack("<64d", *self.values))
+
+    def test_that_leave_few_values_are_told_of(self):
+        for command in (("info", "p_4x4x4_float64.raw"), ("extract", "p_4x4x4_float64.raw", "--iso", 101325.02, "-o", "m.ply"),
+                        ("convert", "p_4x4x4_float64.raw", "q.nrrd"),
+                        ("bake", "p_4x4x4_float64.raw", "-o", "l.nrrd", "--rays", 4)):
+            said = self.succeed(*command, "--quiet").stderr
+            self.assertEqual(said.count("isolux: warning: "), 1, said)
+            self.assertIn("rounded to float32, which has only about 13 from", said)
+            self.assertIn("--subtract 101325 ", said)
+
+    def test_that_are_taken_off_lose_nothing(self):
+        said = self.succeed("convert", "p_4x4x4_float64.raw", "q.nrrd", "--subtract", 101325).stderr
+        self.assertEqual(said, "")
+        fields, _, data = nrrd_header(self.path("q.nrrd"))
+        self.assertEqual(fields["type"], "float")
+        for value, read in zip(self.values, struct.unpack("<64f", data)):
+            self.assertAlmostEqual(value - 101325, read, delta=1e-8)  # half a unit in the last place of .05 and less
+
+    def test_small_beside_the_range_are_not_told_of(self):
+        self.write("r_4x4x4_float64.raw", struct.pack("<64d", *(0.1 * i for i in range(64))))
+        self.assertEqual(self.succeed("info", "r_4x4x4_float64.raw").stderr, "")
+
+    def test_that_make_a_volume_constant_are_named(self):
+        self.write("c_4x4x4_float64.raw", struct.pack("<64d", *(1e6 + 1e-4 * i for i in range(64))))
+        self.fail(1, "bake", "c_4x4x4_float64.raw", "-o", "l.nrrd", says=("every voxel is 1000000", "rounded to float32"))
+
+
+class MissingValues(CommandLineTest):
+    def convert(self, *more):
+        self.write("n_2x2x2_int16.raw", struct.pack("<8h", 1, 2, 3, 4, 5, 6, 7, -9999))
+        self.succeed("convert", "n_2x2x2_int16.raw", "o.nrrd", "--nodata", -9999, *more)
+        fields, _, data = nrrd_header(self.path("o.nrrd"))
+        return fields["type"], struct.unpack("<8" + {"int16": "h", "float": "f"}[fields["type"]], data)
+
+    def test_are_no_numbers(self):
+        kind, values = self.convert()
+        self.assertEqual(kind, "float")
+        self.assertEqual(values[:7], (1, 2, 3, 4, 5, 6, 7))
+        self.assertTrue(math.isnan(values[7]))
+        self.assertTrue(math.isnan(self.convert("--subtract", 0.5)[1][7]))
+
+    def test_are_replaced_as_others_that_are_no_numbers(self):
+        self.assertEqual(self.convert("--replace-nonfinite", 0), ("int16", (1, 2, 3, 4, 5, 6, 7, 0)))
+        self.assertEqual(self.convert("--replace-nonfinite", 0.5), ("float", (1, 2, 3, 4, 5, 6, 7, 0.5)))
+
+    def test_are_those_of_the_files_own_precision(self):
+        self.write("f_2x2x2_float32.raw", struct.pack("<8f", 1, 2, 3, 4, 5, 6, 7, -9999.9))
+        self.succeed("convert", "f_2x2x2_float32.raw", "o.nrrd", "--nodata", -9999.9, "--replace-nonfinite", 0)
+        self.assertEqual(struct.unpack("<8f", nrrd_header(self.path("o.nrrd"))[2])[7], 0)
+
+
+if __name__ == "__main__":
+    unittest.main()
