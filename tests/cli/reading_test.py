@@ -64,5 +64,14 @@ class MissingValues(CommandLineTest):
         self.assertEqual(struct.unpack("<8f", nrrd_header(self.path("o.nrrd"))[2])[7], 0)
 
 
+class Names(CommandLineTest):
+    def test_of_other_formats_are_no_lights(self):
+        for name in ("x.vtk", "light.nii.gz", "light.nhdr"):
+            self.fail(2, "bake", "gen:sphere:8", "-o", name, says=("--output", name, ".nrrd"))
+            self.fail(2, "bake", "gen:sphere:8", "-o", "l.nrrd", "--error-grid", name, says=("--error-grid", name))
+        for name in ("light.NRRD", "light"):
+            self.succeed("bake", "gen:sphere:8", "-o", name, "--rays", 4, "--quiet")
+
+
 if __name__ == "__main__":
     unittest.main()

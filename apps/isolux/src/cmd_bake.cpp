@@ -3,7 +3,9 @@
 #include <isolux/bake/light_metadata.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
+#include <filesystem>
 #include <memory>
 
 #include "bake_command.h"
@@ -106,7 +108,18 @@ std::string wanted(const BakeOptions& options, const Volume& volume, const BakeS
   return grid + " and their sites: fewer (--texels, --texels-a-cell), --rays or an --iso-range take less";
 }
 
+/// \throw UsageError before any work is done for a light under another format's name. Without an extension it may be a
+/// pipe.
+void require_light_name(const std::string& option, const std::string& path) {
+  std::string extension = std::filesystem::path(path).extension().string();
+  for (char& c : extension) c = char(std::tolower(static_cast<unsigned char>(c)));
+  if (!extension.empty() && extension != ".nrrd")
+    throw UsageError(fmt::format("{}: {}: light is written as .nrrd, header and data in one", option, path));
+}
+
 void run_bake(const BakeOptions& options, Session& session) {
+  require_light_name("--output", options.output);
+  require_light_name("--error-grid", options.error_grid);
   BakeSettings settings = bake_settings(options, session.stages);
   const Volume volume = options.volume.read(session);
   const Scene scene = session.timed("read", [&] { return options.trace.scene(); });
