@@ -244,7 +244,7 @@ class BadLight(CommandLineTest):
                       says=("points.csv", "no points", "x,y,z"))
         self.write("points.csv", "id,z,y,x\n")  # a table that happens to be empty
         self.succeed("probe", "gen:sphere:8", "--light", "light.nrrd", "--points", "points.csv", "-o", "empty.csv")
-        self.assertEqual(self.read("empty.csv"), b"x,y,z,isovalue,e\n")
+        self.assertEqual(self.read("empty.csv"), b"x,y,z,isovalue,e,id\n")
         self.fail(1, "probe", "gen:sphere:8", "--light", "light.nrrd", "--points", "gone.csv", "-o", "o.csv",
                   says="gone.csv: cannot open the points: No such file or directory")
 

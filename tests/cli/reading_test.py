@@ -73,5 +73,29 @@ class Names(CommandLineTest):
             self.succeed("bake", "gen:sphere:8", "-o", name, "--rays", 4, "--quiet")
 
 
+class Tables(CommandLineTest):
+    def probe(self, table):
+        self.write("in.csv", table)
+        self.succeed("probe", "gen:sphere:8", "--light", "l.nrrd", "--points", "in.csv", "-o", "out.csv")
+        return self.read("out.csv").decode().splitlines()
+
+    def setUp(self):
+        super().setUp()
+        self.succeed("bake", "gen:sphere:8", "-o", "l.nrrd", "--rays", 4, "--quiet")
+
+    def test_keep_their_other_columns(self):
+        lines = self.probe('name,x,y,z,charge\n"C ""a""",.5,.25,.5,-1\nCB,.5,.25,.5\n')
+        self.assertEqual(lines[0], "x,y,z,isovalue,e,name,charge")
+        self.assertTrue(lines[1].startswith("0.5,0.25,0.5,") and lines[1].endswith(',"C ""a""",-1'), lines[1])
+        self.assertTrue(lines[2].endswith(",CB,"), lines[2])
+        self.assertEqual(self.probe("x;y;z;no,te\n.5;.25;.5;a\n")[0], 'x,y,z,isovalue,e,"no,te"')
+        self.assertEqual(self.probe("a b c\n.5 .25 .5\n")[0], "x,y,z,isovalue,e")
+
+    def test_whose_names_do_not_tell_the_points_are_refused(self):
+        self.write("in.csv", "id,px,py,pz\n1,.5,.25,.5\n")
+        self.fail(1, "probe", "gen:sphere:8", "--light", "l.nrrd", "--points", "in.csv", "-o", "out.csv",
+                  says=("in.csv: line 1", "'id', 'px', 'py', 'pz'", "x, y and z"))
+
+
 if __name__ == "__main__":
     unittest.main()

@@ -69,11 +69,26 @@ bool may_be_lit(const LightDetail& detail, double isovalue, double slack) {
          (isovalue + slack >= double(detail.isovalues->low) && isovalue - slack <= double(detail.isovalues->high));
 }
 
+/// A field of a table parted by commas, in front of which one stands.
+std::string next_field(const std::string& text) {
+  if (text.find_first_of(",\"") == std::string::npos) return "," + text;
+  std::string quoted = ",\"";
+  for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
+  return quoted + '"';
+}
+
+std::string next_fields(const std::vector<std::string>& texts) {
+  std::string fields;
+  for (const std::string& text : texts) fields += next_field(text);
+  return fields;
+}
+
 void run_probe(const ProbeOptions& options, Session& session) {
   if (!options.light.given()) throw UsageError("--light is required: the light to read at the points");
   const Volume volume = options.volume.read(session);
   const LightFile light = options.light.read(volume, session);
-  const std::vector<Vec3> points = session.timed("read", [&] { return read_point_table(options.points); });
+  const PointTable table = session.timed("read", [&] { return read_point_table(options.points); });
+  const std::vector<Vec3>& points = table.points;
   const Box box(volume.lattice());
   const TrilinearField field(volume);
   const LightReader reader(volume, options.light.of_side(light, options.side.or_outer()), TexelStorage::kBricks,
@@ -85,8 +100,10 @@ void run_probe(const ProbeOptions& options, Session& session) {
   std::size_t unlit = 0;
   session.timed("write", [&] {
     write_atomically(options.output, [&](std::ostream& out) {
-      out << (light.grid.channels == 3 ? "x,y,z,isovalue,e_r,e_g,e_b\n" : "x,y,z,isovalue,e\n");
-      for (const Vec3& p : points) {
+      out << (light.grid.channels == 3 ? "x,y,z,isovalue,e_r,e_g,e_b" : "x,y,z,isovalue,e") << next_fields(table.names)
+          << '\n';
+      for (std::size_t i = 0; i < points.size(); ++i) {
+        const Vec3& p = points[i];
         const auto index = box.inside(p);
         if (!index) ++outside;
         const double nan = std::numeric_limits<double>::quiet_NaN();
@@ -95,7 +112,7 @@ void run_probe(const ProbeOptions& options, Session& session) {
         const Vec3f e = index ? reader.at_index(*index) : Vec3f(float(nan));
         fmt::print(out, "{},{},{},{:.9g}", p.x, p.y, p.z, isovalue);
         for (int c = 0; c < light.grid.channels; ++c) fmt::print(out, ",{:.9g}", e[c]);
-        out << '\n';
+        out << next_fields(table.others[i]) << '\n';
       }
     });
   });
@@ -123,7 +140,8 @@ void add_probe_command(CLI::App& program, Session& session) {
   session.reads(
       command
           .add_option("--points", options->points,
-                      "one point a line, in the columns x, y and z if a first line names them, else in the first three")
+                      "one point a line, in the columns x, y and z if a first line names them, else in the first "
+                      "three; other named columns go behind the light")
           ->required()
           ->type_name("IN.csv"));
   session.writes(

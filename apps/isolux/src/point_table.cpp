@@ -1,6 +1,7 @@
 #include "point_table.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <isolux/core/error.h>
 #include <isolux/core/options.h>
 
@@ -28,11 +29,13 @@ std::string trimmed(std::string text) {
   return text;
 }
 
-/// Without blanks and a pair of quotes around it.
+/// Without blanks and a pair of quotes around it, in which two quotes stand for one.
 std::string bare(const std::string& field) {
-  const std::string text = trimmed(field);
-  const bool quoted = text.size() > 1 && text.front() == '"' && text.back() == '"';
-  return quoted ? trimmed(text.substr(1, text.size() - 2)) : text;
+  std::string text = trimmed(field);
+  if (text.size() < 2 || text.front() != '"' || text.back() != '"') return text;
+  text = trimmed(text.substr(1, text.size() - 2));
+  for (std::size_t at = text.find("\"\""); at != std::string::npos; at = text.find("\"\"", at + 1)) text.erase(at, 1);
+  return text;
 }
 
 std::vector<std::string> fields_of(const std::string& line) {
@@ -77,6 +80,26 @@ std::optional<Columns> named_columns(const std::vector<std::string>& fields) {
   return columns;
 }
 
+/// The columns that a line of names says the points are in. \throw InvalidInput
+Columns columns_of(const std::string& path, std::size_t line, const std::vector<std::string>& names) {
+  if (const auto named = named_columns(names)) return *named;
+  if (names.size() > 3)
+    throw InvalidInput(
+        fmt::format("{}: line {}: none of the columns '{}' are called x, y and z: name the three that the "
+                    "points are in",
+                    path, line, fmt::join(names, "', '")));
+  return {0, 1, 2};
+}
+
+/// The fields beside the columns of points; "" for those that are not there.
+std::vector<std::string> others_of(const std::vector<std::string>& fields, const Columns& columns, std::size_t count) {
+  std::vector<std::string> others;
+  for (std::size_t i = 0; i < count; ++i)
+    if (std::find(columns.begin(), columns.end(), i) == columns.end())
+      others.push_back(i < fields.size() ? fields[i] : "");
+  return others;
+}
+
 std::optional<Vec3> point_of(const std::vector<std::string>& fields, const Columns& columns) {
   Vec3 point(0.0);
   for (int a = 0; a < 3; ++a) {
@@ -90,11 +113,12 @@ std::optional<Vec3> point_of(const std::vector<std::string>& fields, const Colum
 
 }  // namespace
 
-std::vector<Vec3> read_point_table(const std::string& path) {
+PointTable read_point_table(const std::string& path) {
   errno = 0;
   std::ifstream file(path);
   if (!file) throw IoError(fmt::format("{}: cannot open the points: {}", path, reason_of(errno)));
-  std::vector<Vec3> points;
+  PointTable table;
+  std::size_t named = 0;           // columns
   std::optional<Columns> columns;  // known from the first line that holds anything
   bool is_table = false;           // that line gives points or says where they are
   std::string line;
@@ -104,22 +128,27 @@ std::vector<Vec3> read_point_table(const std::string& path) {
     if (line.empty() || line[0] == '#') continue;
     const auto fields = fields_of(line);
     if (!columns) {
-      const auto named = are_names(fields) ? named_columns(fields) : std::nullopt;
-      columns = named.value_or(Columns{0, 1, 2});
-      is_table = named.has_value();
-      if (are_names(fields)) continue;
+      const bool names = are_names(fields);
+      columns = names ? columns_of(path, number_of_line, fields) : Columns{0, 1, 2};
+      is_table = names && named_columns(fields);
+      if (names) {
+        named = fields.size();
+        table.names = others_of(fields, *columns, named);
+        continue;
+      }
     }
     const auto point = point_of(fields, *columns);
     if (!point) {
       throw InvalidInput(
           fmt::format("{}: line {}: '{}' where three numbers x,y,z are wanted", path, number_of_line, line));
     }
-    points.push_back(*point);
+    table.points.push_back(*point);
+    table.others.push_back(others_of(fields, *columns, named));
   }
   if (file.bad()) throw IoError(fmt::format("{}: cannot read the points: is it a file?", path));
-  if (points.empty() && !is_table)
+  if (table.points.empty() && !is_table)
     throw InvalidInput(fmt::format("{}: no points: allowed are lines of three numbers x,y,z", path));
-  return points;
+  return table;
 }
 
 }  // namespace isolux
