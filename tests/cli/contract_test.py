@@ -234,9 +234,10 @@ class Render(CommandLineTest):
 class Reports(CommandLineTest):
     def test_say_what_was_asked_for(self):
         self.succeed("bake", "gen:sphere:8", "-o", "l.nrrd", "--rays", 1, "--quiet")
-        shown = ("gen:sphere:8", "--iso", -0.25, "--light", "l.nrrd", "--outer", "higher", "--side", "inner", "--report", "report.json", "--quiet")
+        shown = ("gen:sphere:8", "--iso", -0.25, "--light", "l.nrrd", "--outer", "higher", "--side", "inner", "--threads", 2, "--report", "report.json",
+                 "--quiet")
         self.succeed("render", *shown, "-o", "i.png", "--size", "20x10", "--exposure", 1, "--eye", "0.5,-1,.5", "--samples", 2)
-        common = {"isovalue": -0.25, "light": "l.nrrd", "outer": "higher", "side": "inner", "seed": 1, "threads": 0}
+        common = {"isovalue": -0.25, "light": "l.nrrd", "outer": "higher", "side": "inner", "seed": 1, "threads": 2}
         self.assertEqual(self.report()["settings"], {**common, "exposure": 1, "eye": [0.5, -1, 0.5], "samples": 2, "size": [20, 10],
                                                      "view": [30, 20], "mode": "global"})
         self.succeed("extract", *shown, "-o", "m.ply", "--exact-light", "--rays", 3, "--min-component", 2)

@@ -73,6 +73,18 @@ class Names(CommandLineTest):
             self.succeed("bake", "gen:sphere:8", "-o", name, "--rays", 4, "--quiet")
 
 
+class Reports(CommandLineTest):
+    def test_say_what_was_read_and_written_by_which_program(self):
+        self.succeed("extract", "gen:sphere:8", "--iso", "-.2", "-o", "m.ply", "--report", "report.json")
+        report = self.report()
+        self.assertEqual((report["input"], report["output"]), ("gen:sphere:8", "m.ply"))
+        self.assertRegex(report["version"], r"^\d+\.\d+\.\d+$")
+        self.assertGreaterEqual(report["settings"]["threads"], 1)
+        self.assertEqual(report["settings"]["isovalue"], -0.2)
+        self.succeed("bake", "gen:sphere:8", "-o", "l.nrrd", "--iso-range=-.3:-.2", "--rays", 4, "--report", "report.json")
+        self.assertEqual(self.report()["settings"]["iso_range"], [-0.3, -0.2])
+
+
 class Tables(CommandLineTest):
     def probe(self, table):
         self.write("in.csv", table)

@@ -1,6 +1,9 @@
 #include "session.h"
 
+#include <fmt/format.h>
 #include <isolux/bake/version.h>
+#include <isolux/core/options.h>
+#include <isolux/core/parallel.h>
 #include <isolux/volume_io/atomic_file.h>
 #include <sys/resource.h>
 
@@ -11,6 +14,19 @@
 #include "usage.h"
 
 namespace isolux {
+namespace {
+
+/// Isovalues are floats: as doubles they would have digits that nobody gave.
+void shorten_isovalues(nlohmann::json& settings) {
+  const auto shorten = [](nlohmann::json& value) {
+    if (value.is_number_float()) value = parse_number("isovalue", fmt::format("{}", value.get<float>()));
+  };
+  if (const auto isovalue = settings.find("isovalue"); isovalue != settings.end()) shorten(*isovalue);
+  if (const auto range = settings.find("iso_range"); range != settings.end())
+    for (nlohmann::json& end : *range) shorten(end);
+}
+
+}  // namespace
 
 Session::Session() : stages(builtin_stages()), report(nlohmann::json::object()) {
   report["seconds"] = nlohmann::json::object();
@@ -35,6 +51,10 @@ void Session::add_common_options(CLI::App& command) {
 void Session::run_action() {
   if (!quiet_) run.progress = make_progress();
   require_output_files(written_, read_);
+  for (const FileOption& option : written_) {
+    if (option.name != "--output" && option.name != "OUT") continue;
+    if (const auto paths = option.paths(); !paths.empty()) report["output"] = paths.front();
+  }
   const Stopwatch total;
   action_();
   add_seconds("total", total.seconds());
@@ -51,8 +71,10 @@ void Session::write_report() const {
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);
   complete["peak_memory_bytes"] = std::int64_t(usage.ru_maxrss) * 1024;
-  complete["settings"]["threads"] = run.threads;
+  complete["version"] = kVersion;
+  complete["settings"]["threads"] = thread_count(run);
   complete["settings"]["seed"] = run.seed;
+  shorten_isovalues(complete["settings"]);
   write_atomically(report_path_, [&](std::ostream& out) {
     out << complete.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) << '\n';
   });

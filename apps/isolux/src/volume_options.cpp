@@ -92,6 +92,7 @@ StoredVolume VolumeOptions::read_in(VoxelForm form, Session& session) const {
   if (!nodata_.empty()) mark_missing(volume, parse_numbers("--nodata", nodata_, 1)[0], options.subtract, replacement);
   warn_of_few_values(volume, session);
   if (replacement) replace_nonfinite(volume, *replacement);
+  session.report["input"] = source_;
   return volume;
 }
 
