@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <filesystem>
 #include <iostream>
 #include <limits>
 #include <mutex>
@@ -52,7 +53,9 @@ std::optional<Volume> volume_of(const Source& source) {
   }
   const char* folder = std::getenv("ISOLUX_DATA");
   if (folder == nullptr) return std::nullopt;
-  return read_volume(std::string(folder) + "/" + source.name + ".nrrd");
+  const std::string path = std::string(folder) + "/" + source.name + ".nrrd";
+  if (!std::filesystem::exists(path)) return std::nullopt;
+  return read_volume(path);
 }
 
 /// Sites uniform in the box, of isovalues in [low, high].
