@@ -1,6 +1,8 @@
 """What the program says of itself, and what it is linked with."""
+import json
 import os
 import re
+import shutil
 import subprocess
 import unittest
 
@@ -21,6 +23,19 @@ class Program(CommandLineTest):
         for command in ("info", "backends", "extract", "bake", "render", "probe", "convert"):
             for option in re.findall(r"^ +(?:-\w,)?(--[a-z-]+)", self.succeed(command, "--help").stdout, re.MULTILINE):
                 self.assertRegex(page, option + r"\b", command)
+
+    def test_the_window_is_found_in_a_folder_of_any_name(self):
+        window = os.path.join(os.path.dirname(ISOLUX), "../viewer/isolux-view")
+        if not os.path.exists(window):
+            self.skipTest("no window in this build")
+        os.mkdir(self.path("it's"))
+        for program in (ISOLUX, window):
+            shutil.copy(program, self.path("it's"))
+        moved = subprocess.run([self.path("it's/isolux"), "backends", "--json"], capture_output=True, text=True, check=True).stdout
+        uploaders = [[stage for stage in json.loads(text) if stage["stage"] == "uploader"]
+                     for text in (moved, self.succeed("backends", "--json").stdout)]
+        self.assertEqual(*uploaders)
+        self.assertTrue(uploaders[0])
 
     def test_links_no_gl(self):
         linked = subprocess.run(["ldd", ISOLUX], capture_output=True, text=True, check=True).stdout.lower()

@@ -11,6 +11,16 @@
 #include <filesystem>
 
 namespace isolux {
+namespace {
+
+/// One word of the shell's.
+std::string quoted(const std::string& text) {
+  std::string word = "'";
+  for (const char c : text) word += c == '\'' ? "'\\''" : std::string(1, c);
+  return word + "'";
+}
+
+}  // namespace
 
 std::string find_companion(const std::string& name) {
   namespace fs = std::filesystem;
@@ -43,7 +53,7 @@ std::optional<nlohmann::json> companion_json(const std::string& name, const std:
   const std::string path = find_companion(name);
   if (path.empty()) return std::nullopt;
   std::string text;
-  std::FILE* pipe = popen(fmt::format("'{}' {} 2>/dev/null", path, argument).c_str(), "r");
+  std::FILE* pipe = popen(fmt::format("{} {} 2>/dev/null", quoted(path), argument).c_str(), "r");
   if (pipe == nullptr) return std::nullopt;
   std::array<char, 4096> buffer{};
   for (std::size_t n = 0; (n = std::fread(buffer.data(), 1, buffer.size(), pipe)) > 0;) text.append(buffer.data(), n);

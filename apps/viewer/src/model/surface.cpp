@@ -4,6 +4,7 @@
 #include <isolux/core/stopwatch.h>
 
 #include <new>
+#include <stdexcept>
 #include <utility>
 
 namespace isolux::viewer {
@@ -28,6 +29,9 @@ Surface SurfaceMaker::make(const ExtractSettings& settings, IndexedMesh memory, 
   } catch (const std::bad_alloc&) {
     surface.mesh = {};
     surface.error = "not enough memory for this surface";
+  } catch (const std::length_error&) {
+    surface.mesh = {};
+    surface.error = "this surface is larger than memory can be";
   }
   surface.seconds = watch.seconds();
   return surface;

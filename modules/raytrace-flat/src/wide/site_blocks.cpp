@@ -247,9 +247,10 @@ class SiteBuckets {
 void for_each_block(const Volume& volume, const Sites& sites, const BlockRequest& request, const Run& run,
                     std::string_view stage, const std::function<void(const SiteBlock&)>& body) {
   const Lattice& lattice = volume.lattice();
-  if (lattice.count() > std::size_t(std::numeric_limits<std::int32_t>::max()) ||
-      sites.size() > std::size_t(std::numeric_limits<std::uint32_t>::max()))
+  if (lattice.count() > std::size_t(std::numeric_limits<std::int32_t>::max()))
     throw InvalidInput(volume.name + ": the wide tracer takes volumes of at most 2^31 - 1 voxels");
+  if (sites.size() > std::size_t(std::numeric_limits<std::uint32_t>::max()))
+    throw InvalidInput(volume.name + ": the wide tracer takes at most 2^32 - 1 sites");
   const Wanted wanted(sites, request);
   if (wanted.size() == 0) return;
   const FieldView field{volume.values.values().data(), lattice.size, request.outer};

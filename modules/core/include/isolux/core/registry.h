@@ -83,6 +83,7 @@ class Registry {
 
   void insert(BackendInfo info, Maker maker) {
     detail::require_new_backend(Stage::kStage, info.name, infos_);
+    makers_.reserve(makers_.size() + 1);  // or a name could stay without a maker
     infos_.push_back(std::move(info));
     makers_.push_back(std::move(maker));
   }
