@@ -21,7 +21,7 @@ namespace {
 
 /// A site's first rays say whether there is an edge.
 constexpr int kFirst = 4;
-constexpr int kOneOf = 8;   ///< or so large a part of all, if that is more
+constexpr int kOneOf = 8;  ///< or so large a part of all, if that is more
 constexpr int kMostTimes = 16;
 
 /// Who asks a sun, and what with so many rays each.

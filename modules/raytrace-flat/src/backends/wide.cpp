@@ -40,10 +40,9 @@ class WideTracer final : public FlatTracer {
     TraceResult result;
     SampleSet& samples = result.samples;
     samples.sites = std::move(sites);
-    SiteRays found =
-        wide::light_and_calibrate(samples, run, [&](SampleSet& some, const Run& own, SiteRays& rays) {
-          light(volume, scene, settings, own, some, rays, result.counters);
-        });
+    SiteRays found = wide::light_and_calibrate(samples, run, [&](SampleSet& some, const Run& own, SiteRays& rays) {
+      light(volume, scene, settings, own, some, rays, result.counters);
+    });
     result.rays = std::move(found.sky);
     return result;
   }
