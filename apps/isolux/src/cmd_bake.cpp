@@ -3,6 +3,7 @@
 #include <isolux/bake/light_metadata.h>
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <cmath>
 #include <filesystem>
@@ -108,12 +109,14 @@ std::string wanted(const BakeOptions& options, const Volume& volume, const BakeS
   return grid + " and their sites: fewer (--texels, --texels-a-cell), --rays or an --iso-range take less";
 }
 
-/// \throw UsageError before any work is done for a light under another format's name. Without an extension it may be a
-/// pipe.
+/// \throw UsageError before any work is done for a light under another format's name
 void require_light_name(const std::string& option, const std::string& path) {
+  constexpr std::array kOthers{".nhdr", ".nii", ".gz",   ".mha", ".mhd", ".mrc", ".map", ".ccp4", ".vtk",
+                               ".vti",  ".tif", ".tiff", ".dcm", ".raw", ".npy", ".ply", ".obj",  ".stl",
+                               ".off",  ".glb", ".png",  ".jpg", ".exr", ".hdr", ".csv", ".json"};
   std::string extension = std::filesystem::path(path).extension().string();
   for (char& c : extension) c = char(std::tolower(static_cast<unsigned char>(c)));
-  if (!extension.empty() && extension != ".nrrd")
+  if (std::find(kOthers.begin(), kOthers.end(), extension) != kOthers.end())
     throw UsageError(fmt::format("{}: {}: light is written as .nrrd, header and data in one", option, path));
 }
 
