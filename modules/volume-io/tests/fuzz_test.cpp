@@ -100,6 +100,11 @@ TEST(Fuzz, LightFiles) {
 
 TEST(Fuzz, MrcHeaders) { fuzz("a.mrc", test::mrc_sample(), 228, 500 * test::stress()); }
 
+TEST(Fuzz, NpyHeaders) {
+  const std::string header = test::npy_header("<i2", "(2, 2, 3)");
+  fuzz("a.npy", header + test::bytes_of(test::ramp()), header.size(), 500 * test::stress());
+}
+
 TEST(Fuzz, NiftiHeaders) {
   fuzz("a.nii", test::nifti_sample(), 352, 500 * test::stress());
   fuzz("a.nii.gz", test::gzipped(test::nifti_sample()), 80, 500 * test::stress());

@@ -27,6 +27,7 @@ std::vector<Sample> samples() {
            "NRRD0004\ntype: short\ndimension: 3\nsizes: 3 2 2\nendian: little\nencoding: raw\n\n" + data,
            {}},
           {"mrc", "a.mrc", test::mrc_sample(), {}},
+          {"npy", "a.npy", test::npy_sample("<i2", "(2, 2, 3)"), {}},
           {"nifti", "a.nii", test::nifti_sample(), {}},
           {"nifti", "a.nii.gz", test::gzipped(test::nifti_sample()), {}},
           {"itk", "a.mha", test::meta_header("LOCAL") + data, {}},

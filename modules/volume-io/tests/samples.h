@@ -44,6 +44,18 @@ inline std::string meta_header(const std::string& data_file, const std::string& 
          data_file + "\n";
 }
 
+inline std::string npy_header(const std::string& descr, const std::string& shape, bool fortran_order = false,
+                              int version = 1) {
+  const std::string text = fmt::format("{{'descr': '{}', 'fortran_order': {}, 'shape': {}, }}\n", descr,
+                                       fortran_order ? "True" : "False", shape);
+  const auto length = std::uint32_t(text.size());
+  return "\x93NUMPY" + std::string{char(version), '\0'} +
+         (version == 1 ? bytes_of<std::uint16_t>({std::uint16_t(length)}) : bytes_of<std::uint32_t>({length})) + text;
+}
+inline std::string npy_sample(const std::string& descr, const std::string& shape, bool fortran_order = false) {
+  return npy_header(descr, shape, fortran_order) + bytes_of(ramp());
+}
+
 inline std::string vtk_header(const std::string& encoding) {
   return "# vtk DataFile Version 3.0\ntitle\n" + encoding +
          "\nDATASET STRUCTURED_POINTS\nDIMENSIONS 3 2 2\nSPACING 0.5 2 4\nORIGIN 10 20 30\nPOINT_DATA 12\n"
