@@ -210,8 +210,8 @@ void run_render(RenderOptions options, Session& session) {
   settings.outer = options.outer.or_else(settings.outer);
   settings.only = options.side.given();
   settings.background = background;
-  const Camera camera =
-      session.timed("frame", [&] { return camera_of(options, volume, double(width) / height, session); });
+  const double aspect = double(width) / height;
+  const Camera camera = session.timed("frame", [&] { return camera_of(options, volume, aspect, session); });
   const auto draw = [&](const Shader& shader) { return render(volume, camera, settings, shader, session.run); };
   Image image = session.timed("render", [&]() -> Image {
     if (mode == "normal") return draw(normal_shader());
