@@ -91,12 +91,10 @@ struct Truth {
 };
 
 SampleSet trace_in(const Subject& subject, Sites sites, int rays, std::uint64_t seed,
-                   LampLight lamps = LampLight::kWithin, RaySpread spread = RaySpread::kEven,
-                   const Settings& options = {}) {
+                   LampLight lamps = LampLight::kWithin, RaySpread spread = RaySpread::kEven) {
   const TraceSettings settings{
       .rays = rays, .bounces = 0, .nets = RayNets::kInterleaved, .lamps = lamps, .spread = spread};
-  const auto tracer = tracers().create({}, options);
-  return tracer->trace(subject.volume, subject.scene, std::move(sites), settings, {.seed = seed}).samples;
+  return tracers().create()->trace(subject.volume, subject.scene, std::move(sites), settings, {.seed = seed}).samples;
 }
 
 Truth truth_of(const Subject& subject) {
@@ -105,8 +103,7 @@ Truth truth_of(const Subject& subject) {
     const std::vector<Vec3f> more = surface_points(subject.volume, h, 2000, 11);
     points.insert(points.end(), more.begin(), more.end());
   }
-  Truth truth{.points = trace_in(subject, make_sites(subject.volume, std::move(points), {}, {}), kReferenceRays, 77,
-                                 LampLight::kWithin, RaySpread::kEven, {{"sun_edges", "false"}}),
+  Truth truth{.points = trace_in(subject, make_sites(subject.volume, std::move(points), {}, {}), kReferenceRays, 77),
               .on_edge = {}};
   for (std::size_t i = 0; i < truth.points.size(); ++i) {
     const Vec3 world = subject.volume.lattice().frame.world(Vec3(truth.points.sites.positions[i]));

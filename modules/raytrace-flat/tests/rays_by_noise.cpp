@@ -107,12 +107,15 @@ TEST(RaysBetweenBalls, AreTheSameForAnyNumberOfThreads) {
   EXPECT_EQ(one.rays, balls().spread.front().rays);
 }
 
-TEST(RaysBetweenBalls, AreTheSameBesideLamps) {
+TEST(RaysBetweenBalls, LeaveLampsLightAsItIs) {
   Scene scene = balls().scene;
   scene.lights.emplace_back(SunLight{.direction = {0.0f, 1.0f, 3.0f}, .irradiance = Vec3f(2.0f)});
   TraceSettings settings = spread_by(RaySpread::kByNoise);
   settings.lamps = LampLight::kToldApart;
   const TraceResult spread = lit(balls().volume, scene, settings, 1);
+  settings.spread = RaySpread::kEven;
+  const TraceResult even = lit(balls().volume, scene, settings, 1);
+  EXPECT_EQ(spread.samples.lamps, even.samples.lamps);
   EXPECT_EQ(spread.rays, balls().spread.front().rays);
   for (std::size_t s = 0; s < balls().exact.size(); ++s)
     EXPECT_NEAR(spread.samples.radiance[s] - spread.samples.lamps[s], balls().spread.front().samples.radiance[s],
