@@ -51,6 +51,8 @@ class Figures(CommandLineTest):
         """The two balls lie beside each other along x: with x up, one above the other."""
         left, right, top, bottom = self.silhouette("--view", "0,0", "--up", "1,0,0", size="50x50")
         self.assertGreater(bottom - top, 1.5 * (right - left))
+        for long in ("1e200,0,0", "1e-320,0,0"):
+            self.assertEqual(self.silhouette("--view", "0,0", "--up", long, size="50x50"), (left, right, top, bottom))
         self.fail(2, "render", "gen:sphere:8", "--iso", -0.3, "-o", "no.png", "--up", "0,0,0", says=("--up", "a direction"))
 
     def test_contradictions_are_told(self):

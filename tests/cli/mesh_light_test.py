@@ -41,6 +41,7 @@ class Caps(CommandLineTest):
         self.assertTrue(all(abs(e - 1) < 1e-5 for _, e in cap))
         cap, said = self.cap("--light", "light.nrrd", "--scene", "picture.json")
         self.assertNotIn("--scene", said)
+        self.assertNotIn("no effect", self.cap("--light", "light.nrrd", "--rays", 16)[1])
         self.assertTrue(all(abs(e - 2) < 0.01 for _, e in cap))
 
 

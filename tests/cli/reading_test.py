@@ -23,6 +23,12 @@ class Offsets(CommandLineTest):
             self.assertIn("rounded to float32, which has only about 13 from", said)
             self.assertIn("--subtract 101325 ", said)
 
+    def test_that_were_taken_off_are_part_of_the_advice(self):
+        self.write("o_2x2x2_float64.raw", struct.pack("<8d", *(1e9 + 1e-3 * i for i in range(8))))
+        said = self.succeed("info", "o_2x2x2_float64.raw", "--subtract", 999000000).stderr
+        self.assertIn("--subtract 1e+09 ", said)
+        self.fail(1, "info", "gen:sphere:8", "--subtract", "1e39", says=("gen:sphere:8", "float32"))
+
     def test_that_are_taken_off_lose_nothing(self):
         said = self.succeed("convert", "p_4x4x4_float64.raw", "q.nrrd", "--subtract", 101325).stderr
         self.assertEqual(said, "")
@@ -57,6 +63,17 @@ class MissingValues(CommandLineTest):
     def test_are_replaced_as_others_that_are_no_numbers(self):
         self.assertEqual(self.convert("--replace-nonfinite", 0), ("int16", (1, 2, 3, 4, 5, 6, 7, 0)))
         self.assertEqual(self.convert("--replace-nonfinite", 0.5), ("float", (1, 2, 3, 4, 5, 6, 7, 0.5)))
+
+    def test_are_compared_before_they_are_rounded(self):
+        wide = [2 ** 24, 2 ** 24 + 1, 2 ** 24 + 2, 0, 1, 2, 3, 4]
+        for kind, code in (("int32", "i"), ("int64", "q"), ("float64", "d")):
+            self.write(f"w_2x2x2_{kind}.raw", struct.pack(f"<8{code}", *wide))
+            for more in ((), ("--subtract", 2 ** 24)):
+                self.succeed("convert", f"w_2x2x2_{kind}.raw", "o.nrrd", "--nodata", 2 ** 24 + 1, *more)
+                fields, _, data = nrrd_header(self.path("o.nrrd"))
+                values = struct.unpack("<8" + {"float": "f", "double": "d"}[fields["type"]], data)
+                self.assertEqual([math.isnan(value) for value in values], [False, True] + 6 * [False])
+        self.assertIn("2^24", self.succeed("convert", "w_2x2x2_int32.raw", "o.nrrd", "--nodata", -1).stderr)
 
     def test_are_those_of_the_files_own_precision(self):
         self.write("f_2x2x2_float32.raw", struct.pack("<8f", 1, 2, 3, 4, 5, 6, 7, -9999.9))
@@ -102,6 +119,21 @@ class Tables(CommandLineTest):
         self.assertTrue(lines[2].endswith(",CB,"), lines[2])
         self.assertEqual(self.probe("x;y;z;no,te\n.5;.25;.5;a\n")[0], 'x,y,z,isovalue,e,"no,te"')
         self.assertEqual(self.probe("a b c\n.5 .25 .5\n")[0], "x,y,z,isovalue,e")
+
+    def test_quote_what_parts_fields(self):
+        lines = self.probe('label,x,y,z,"n,m"\n"a,.1,.2,.3,b",.5,.25,.5,"c;d"\n')
+        self.assertEqual(lines[0], 'x,y,z,isovalue,e,label,"n,m"')
+        self.assertTrue(lines[1].startswith("0.5,0.25,0.5,") and lines[1].endswith(',"a,.1,.2,.3,b",c;d'), lines[1])
+        self.assertTrue(self.probe('x y z t\n.5 .25 .5 "a b"\n')[1].endswith(",a b"))
+        self.assertTrue(self.probe("x\ty\tz\ta1\tb\r\n.5\t.25\t.5\t\tfoo bar\r\n")[1].endswith(",,foo bar"))
+        again = self.probe("\n".join(lines).replace("isovalue,e", "h,e0") + "\n")
+        self.assertTrue(again[1].endswith(',"a,.1,.2,.3,b",c;d'), again[1])
+
+    def test_with_more_fields_than_names_or_open_quotes_are_refused(self):
+        for table, why in (("x,y,z,a\n.5,.25,.5,1,2\n", "5 fields"), ('x,y,z,a\n.5,.25,.5,"1\n', "quote"),
+                           ('x,y,z,a\n.5,.25,.5,"1"2\n', "quote")):
+            self.write("in.csv", table)
+            self.fail(1, "probe", "gen:sphere:8", "--light", "l.nrrd", "--points", "in.csv", "-o", "out.csv", says=("in.csv: line 2", why))
 
     def test_whose_names_do_not_tell_the_points_are_refused(self):
         self.write("in.csv", "id,px,py,pz\n1,.5,.25,.5\n")

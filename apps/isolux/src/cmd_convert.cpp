@@ -5,9 +5,11 @@
 #include <isolux/volume_io/write.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <memory>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include "commands.h"
@@ -30,6 +32,15 @@ void warn_of_rounding(const StoredVolume& volume, const Session& session) {
   if (std::max(-range.low, range.high) >= kAllWhole)
     session.warn(fmt::format("{}: its values are {}; of those beyond 2^24 the nearest of float32 are written",
                              volume.name, type));
+}
+
+/// Where --nodata or --replace-nonfinite left what no whole number is, floats are written.
+void choose_type(StoredVolume& volume) {
+  const auto* floats = std::get_if<Grid<float>>(&volume.values);
+  if (floats == nullptr || volume.stored_type == ScalarType::kFloat64) return;
+  const auto values = floats->values();
+  const auto is_whole = [](float value) { return std::isfinite(value) && std::floor(value) == value; };
+  if (!std::all_of(values.begin(), values.end(), is_whole)) volume.stored_type = ScalarType::kFloat32;
 }
 
 /// \throw UsageError for a name that says no format that can be written
@@ -82,8 +93,9 @@ void add_convert_command(CLI::App& program, Session& session) {
   session.add_common_options(command);
   command.callback([options, &session] {
     session.on_run([options, &session] {
-      const StoredVolume volume = options->volume.read_as_is(session);
+      StoredVolume volume = options->volume.read_as_is(session);
       warn_of_rounding(volume, session);
+      choose_type(volume);
       const std::vector<std::string> before = data_before(options->output, session);
       session.timed("write", [&] { write_volume(volume, options->output, options->write); });
       say_what_is_left(before, files_written(options->output, options->write), session);

@@ -104,7 +104,7 @@ void warn_of_no_effect(const ExtractOptions& options, const std::optional<LightF
     session.warn(fmt::format("{}: {} files have no colours: {} has no effect but for the side that is outside",
                              options.output, std::filesystem::path(options.output).extension().string(),
                              options.light.given() ? "--light" : "--exact-light"));
-  if (!options.exact_light && options.trace.says_how_to_trace())
+  if (!options.exact_light && !(light && options.cap) && options.trace.says_how_to_trace())
     session.warn("--bounces, --quality, --rays and --tracer have no effect without --exact-light");
   const bool is_of_cap = light && options.cap && !light_scene(*light);
   if (light && !options.exact_light && options.trace.scene_given() && !is_of_cap)

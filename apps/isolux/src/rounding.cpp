@@ -1,7 +1,6 @@
 #include "rounding.h"
 
 #include <fmt/format.h>
-#include <isolux/volume_io/scalar_type.h>
 
 #include <algorithm>
 #include <cmath>
@@ -45,14 +44,13 @@ bool rounded_to_few(const StoredVolume& volume) {
   return range && range->count < kFew;
 }
 
-void warn_of_few_values(const StoredVolume& volume, const Session& session) {
+void warn_of_few_values(const StoredVolume& volume, double subtracted, const Session& session) {
   const auto range = rounded_range(volume);
   if (!range || range->count >= kFew) return;
   session.warn(
-      fmt::format("{}: its {} values were rounded to float32, which has only about {:.0f} from {:.9g} to {:.9g}: "
+      fmt::format("{}: its values were rounded to float32, which has only about {:.0f} from {:.9g} to {:.9g}: "
                   "surfaces get steps; --subtract {:.9g} takes so much off first (isovalues too are then less by it)",
-                  volume.name, scalar_type_name(volume.stored_type), range->count, range->low, range->high,
-                  0.5 * (range->low + range->high)));
+                  volume.name, range->count, range->low, range->high, subtracted + 0.5 * (range->low + range->high)));
 }
 
 }  // namespace isolux

@@ -10,7 +10,7 @@ namespace isolux {
 /// the largest are few.
 [[nodiscard]] bool rounded_to_few(const StoredVolume& volume);
 
-/// Says so, and what helps.
-void warn_of_few_values(const StoredVolume& volume, const Session& session);
+/// Says so, and what helps. `subtracted` is ReadOptions::subtract.
+void warn_of_few_values(const StoredVolume& volume, double subtracted, const Session& session);
 
 }  // namespace isolux

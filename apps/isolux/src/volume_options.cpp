@@ -4,17 +4,28 @@
 #include <isolux/volume_io/read.h>
 #include <isolux/volume_io/scalar_type.h>
 
+#include <cmath>
 #include <limits>
 #include <optional>
+#include <variant>
 
 #include "bake_options.h"
 #include "memory.h"
-#include "missing_values.h"
 #include "parse.h"
 #include "rounding.h"
 #include "usage.h"
 
 namespace isolux {
+namespace {
+
+void replace_nonfinite(StoredVolume& volume, float replacement) {
+  auto* floats = std::get_if<Grid<float>>(&volume.values);
+  if (floats == nullptr) return;
+  for (float& voxel : floats->values())
+    if (!std::isfinite(voxel)) voxel = replacement;
+}
+
+}  // namespace
 
 void VolumeOptions::add_to(CLI::App& command, Session& session) {
   const auto files = [this, &session] {
@@ -34,7 +45,7 @@ void VolumeOptions::add_to(CLI::App& command, Session& session) {
       ->check(finite_number())
       ->type_name("VALUE");
   command.add_option("--nodata", nodata_, "value of the file that stands for none: such voxels are no numbers")
-      ->check(finite_number())
+      ->check(number_within(-std::numeric_limits<double>::max(), std::numeric_limits<double>::max()))
       ->type_name("VALUE");
   command
       .add_option("--subtract", subtract_,
@@ -76,6 +87,7 @@ ReadOptions VolumeOptions::read_options(const Session& session) const {
     options.spacing = Vec3(s[0], s[1], s[2]);
   }
   if (!subtract_.empty()) options.subtract = parse_numbers("--subtract", subtract_, 1)[0];
+  if (!nodata_.empty()) options.nodata = parse_numbers("--nodata", nodata_, 1)[0];
   return options;
 }
 
@@ -89,8 +101,7 @@ StoredVolume VolumeOptions::read_in(VoxelForm form, Session& session) const {
   };
   StoredVolume volume = session.timed("read", [&] { return with_memory_for("the values of " + source_, read); });
   for (const std::string& remark : volume.remarks) session.warn(remark);
-  if (!nodata_.empty()) mark_missing(volume, parse_numbers("--nodata", nodata_, 1)[0], options.subtract, replacement);
-  warn_of_few_values(volume, session);
+  warn_of_few_values(volume, options.subtract, session);
   if (replacement) replace_nonfinite(volume, *replacement);
   session.report["input"] = source_;
   return volume;

@@ -14,10 +14,12 @@ namespace {
 
 /// A camera turned as the view says, its eye in the world's origin.
 Camera turned_camera(const View& view) {
-  const double length = glm::length(view.up);
-  if (!(length > 0.0) || !std::isfinite(length))
+  // By way of 1: squares of long and of short ones are no numbers.
+  const double largest = std::max({std::fabs(view.up.x), std::fabs(view.up.y), std::fabs(view.up.z)});
+  const Vec3 scaled = view.up / largest;
+  if (!(largest > 0.0) || !std::isfinite(scaled.x + scaled.y + scaled.z))
     throw InvalidInput(fmt::format("up = ({}, {}, {}): allowed is a direction", view.up.x, view.up.y, view.up.z));
-  const Vec3 up = view.up / length;
+  const Vec3 up = glm::normalize(scaled);
   constexpr double kAlong = 1e-6;  // sine of the angle below which x is taken for up itself
   const Vec3 x(1.0, 0.0, 0.0);
   const Vec3 y(0.0, 1.0, 0.0);

@@ -36,8 +36,8 @@ DecodedValues read_values(const DataPlace& place, std::uint64_t count, const Rea
   require_room(place, count);
   const auto source = place.compressed ? gzip_source(place.file, place.offset) : file_source(place.file, place.offset);
   skip_bytes(*source, place.skipped, place.file);
-  auto values = is_scaled(place) ? decode_scaled(*source, place.layout, count, place.slope,
-                                                 place.intercept - options.subtract, place.file, run)
+  auto values = is_scaled(place) ? decode_scaled(*source, place.layout, count, {place.slope, place.intercept}, options,
+                                                 place.file, run)
                                  : decode_scalars(*source, place.layout, count, options, place.file, run);
   // Asking for more is what makes zlib look at the check sum behind the last byte.
   std::byte more{};

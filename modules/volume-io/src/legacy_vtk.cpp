@@ -155,6 +155,7 @@ VtkValues read_text(const LegacyVtk& header, const ReadOptions& options, const R
   const std::uint64_t count = header.lattice.count();
   const std::string& path = header.data.file;
   NumberText text(path, header.data.offset, " \n\r\t\f\v");
+  const AsWanted as_wanted(options, header.data.layout.type == ScalarType::kFloat32);
   std::vector<float> values;
   values.reserve(count);
   bool rounded = false;
@@ -165,7 +166,7 @@ VtkValues read_text(const LegacyVtk& header, const ReadOptions& options, const R
     if (!is_number(header.data.layout.type, word))
       throw InvalidInput(fmt::format("{}: '{}', value {} of the data, is no {}", path, excerpt(word), values.size(),
                                      scalar_type_name(header.data.layout.type)));
-    const double value = text.number() - options.subtract;
+    const double value = as_wanted(text.number());
     values.push_back(float(value));
     rounded |= double(values.back()) != value && !std::isnan(value);
     if (values.size() % 65536 == 0) throw_if_stopped(run);

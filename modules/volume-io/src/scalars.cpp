@@ -143,7 +143,7 @@ bool reads_as(ScalarType type, std::string_view text) {
 
 DecodedValues decode_scalars(ByteSource& source, const ScalarLayout& layout, std::uint64_t count,
                              const ReadOptions& options, const std::string& path, const Run& run) {
-  if (options.subtract != 0.0) return decode_scaled(source, layout, count, 1.0, -options.subtract, path, run);
+  if (options.subtract != 0.0 || options.nodata) return decode_scaled(source, layout, count, {}, options, path, run);
   return with_type(layout.type, [&](auto zero) -> DecodedValues {
     using T = decltype(zero);
     if constexpr (std::is_integral_v<T> && sizeof(T) <= 2) {

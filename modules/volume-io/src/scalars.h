@@ -7,6 +7,7 @@
 #include <isolux/volume_io/volume_reader.h>
 
 #include <functional>
+#include <limits>
 #include <optional>
 #include <span>
 #include <string>
@@ -44,9 +45,30 @@ struct DecodedValues {
 /// exponent.
 [[nodiscard]] bool reads_as(ScalarType type, std::string_view text);
 
-/// Reads `count` numbers, in ReadOptions::form and less ReadOptions::subtract. \throw InvalidInput for a number that
-/// does not fit a float; IoError naming `path` and the bytes expected and found if there are fewer; Cancelled. Memory
-/// follows what was read, not what was promised.
+/// What a number of a file is read as.
+class AsWanted {
+ public:
+  /// `by_floats`: the file is of floats, or scales its numbers, so that it holds what is nearest to
+  /// ReadOptions::nodata.
+  AsWanted(const ReadOptions& options, bool by_floats)
+      : nodata_(options.nodata), subtract_(options.subtract), by_floats_(by_floats) {}
+
+  /// NaN for ReadOptions::nodata, any other less ReadOptions::subtract.
+  [[nodiscard]] double operator()(double number) const {
+    if (nodata_ && (number == *nodata_ || (by_floats_ && float(number) == float(*nodata_))))
+      return std::numeric_limits<double>::quiet_NaN();
+    return number - subtract_;
+  }
+
+ private:
+  std::optional<double> nodata_;
+  double subtract_;
+  bool by_floats_;
+};
+
+/// Reads `count` numbers, in ReadOptions::form and without ReadOptions::nodata and less ReadOptions::subtract. \throw
+/// InvalidInput for a number that does not fit a float; IoError naming `path` and the bytes expected and found if there
+/// are fewer; Cancelled. Memory follows what was read, not what was promised.
 [[nodiscard]] DecodedValues decode_scalars(ByteSource& source, const ScalarLayout& layout, std::uint64_t count,
                                            const ReadOptions& options, const std::string& path, const Run& run);
 

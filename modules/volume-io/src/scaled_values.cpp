@@ -24,8 +24,10 @@ double number_of(const std::byte* bytes) {
 
 }  // namespace
 
-DecodedValues decode_scaled(ByteSource& source, const ScalarLayout& layout, std::uint64_t count, double slope,
-                            double intercept, const std::string& path, const Run& run) {
+DecodedValues decode_scaled(ByteSource& source, const ScalarLayout& layout, std::uint64_t count, const Scaling& scaling,
+                            const ReadOptions& options, const std::string& path, const Run& run) {
+  const auto [slope, intercept] = scaling;
+  const AsWanted as_wanted(options, layout.type == ScalarType::kFloat32 || slope != 1.0 || intercept != 0.0);
   const std::size_t width = bytes_per_scalar(layout.type);
   const auto number = with_type(layout.type, [](auto zero) { return number_of<decltype(zero)>; });
   std::vector<float> values;
@@ -42,12 +44,12 @@ DecodedValues decode_scaled(ByteSource& source, const ScalarLayout& layout, std:
     for (std::size_t i = 0; i < bytes.size(); i += width) {
       if (layout.big_endian) std::reverse(&bytes[i], &bytes[i] + width);
       const double stored = number(&bytes[i]);
-      const double scaled = slope * stored + intercept;
-      if (!fits_float(scaled) || std::isfinite(scaled) != std::isfinite(stored))
+      const double scaled = as_wanted(slope * stored + intercept);
+      if (!fits_float(scaled) || (std::isinf(scaled) && std::isfinite(stored)))
         throw InvalidInput(
             fmt::format("{}: {}, value {} of the data, is {:.5g} as {} * x + {}, by which values are scaled: "
                         "beyond what float32 holds, in which volumes are kept",
-                        path, stored, values.size(), scaled, slope, intercept));
+                        path, stored, values.size(), scaled, slope, intercept - options.subtract));
       values.push_back(float(scaled));
       rounded |= double(values.back()) != scaled && !std::isnan(scaled);
     }

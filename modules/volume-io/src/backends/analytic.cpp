@@ -1,4 +1,5 @@
 #include "../make_volume.h"
+#include "../scalars.h"
 
 #include <fmt/format.h>
 #include <isolux/core/error.h>
@@ -12,6 +13,18 @@ namespace {
 
 constexpr std::string_view kPrefix = "gen:";
 constexpr int kDefaultSize = 64;
+
+/// \throw InvalidInput for a value that does not fit a float
+void take_as_wanted(Volume& volume, const ReadOptions& options) {
+  const detail::AsWanted as_wanted(options, true);
+  for (float& value : volume.values.values()) {
+    const double wanted = as_wanted(double(value));
+    if (!detail::fits_float(wanted))
+      throw InvalidInput(fmt::format("{}: {} less {} is beyond what float32 holds, in which volumes are kept",
+                                     volume.name, value, options.subtract));
+    value = float(wanted);
+  }
+}
 
 /// `gen:NAME[:N]`: built-in functions sampled on the unit cube. Immutable, callable from many threads.
 class AnalyticReader final : public VolumeReader {
@@ -37,8 +50,7 @@ class AnalyticReader final : public VolumeReader {
             fmt::format("{}: '{}' is no number of points an axis; allowed is 2 to 2048", source, digits));
     }
     Volume volume = sample_analytic_field(text.substr(0, colon), n, run);
-    if (options.subtract != 0.0)
-      for (float& value : volume.values.values()) value = float(double(value) - options.subtract);
+    if (options.subtract != 0.0 || options.nodata) take_as_wanted(volume, options);
     if (!options.spacing) return keep_floats(std::move(volume));
     const auto values = volume.values.values();
     return detail::make_volume(volume.name, volume.lattice(), {std::vector<float>(values.begin(), values.end())},

@@ -32,6 +32,8 @@ struct ReadOptions {
   bool big_endian = false;       ///< of a headerless file whose name says the rest
   std::optional<Vec3> spacing;   ///< replaces the file's spacing, world units; needed where a format has none
   double subtract = 0.0;  ///< taken off each value before it becomes a float; what is left is float32 in any file
+  /// Numbers of the file, scaled where it says so, that stand for none: they become NaN, and all others floats.
+  std::optional<double> nodata{};
   bool allow_external_data = false;                         ///< a header may name a data file outside its own folder
   VoxelForm form = VoxelForm::kFloats;                      ///< set by read_volume and read_stored_volume
   std::map<std::string, Settings, std::less<>> settings{};  ///< options of readers, by their names
