@@ -27,31 +27,65 @@ wide::SiteCells cells_for(const Sites& sites) {
   }
 }
 
+/// Where sites saw what.
+class Surroundings {
+ public:
+  Surroundings(const wide::SiteCells& cells, const Sites& sites, std::span<const LampSeen> seen)
+      : any_(cells.end()),
+        all_(cells.end()),
+        none_(cells.end()),
+        some_(cells.end()),
+        near_some_(cells.end()),
+        several_(cells.end()) {
+    for (std::size_t site = 0; site < seen.size(); ++site) {
+      const wide::SiteCells::Cell cell = cells.of(sites.positions[site]);
+      const bool some = seen[site] == LampSeen::kSome;
+      const bool all = seen[site] == LampSeen::kAll;
+      const bool none = seen[site] == LampSeen::kNone;
+      if (all || some || none) any_.set(cell);
+      if (all) all_.set(cell);
+      if (none) none_.set(cell);
+      if (some && some_[cell]) several_.set(cell);
+      if (some) some_.set(cell);
+    }
+    all_.dilate();
+    none_.dilate();
+    near_some_ = some_;
+    near_some_.dilate();
+  }
+
+  [[nodiscard]] bool are_few(const wide::SiteCells::Cell& cell) const { return any_.count_about(cell) < kLeastCells; }
+  [[nodiscard]] bool are_on_both_sides(const wide::SiteCells::Cell& cell) const { return all_[cell] && none_[cell]; }
+  [[nodiscard]] bool hold_an_edge(const wide::SiteCells::Cell& cell) const {
+    return near_some_[cell] || are_on_both_sides(cell) || are_few(cell);
+  }
+  /// But for one site in the cell that saw a part.
+  [[nodiscard]] bool agree(const wide::SiteCells::Cell& cell) const {
+    return !several_[cell] && some_.count_about(cell) == 1 && !are_on_both_sides(cell) && !are_few(cell);
+  }
+
+ private:
+  wide::CellBits any_;   ///< cells
+  wide::CellBits all_;   ///< and the cells about them
+  wide::CellBits none_;  ///< likewise
+  wide::CellBits some_;
+  wide::CellBits near_some_;
+  wide::CellBits several_;  ///< that saw a part
+};
+
 }  // namespace
 
-std::vector<bool> near_shadow_edges(const Sites& sites, std::span<const LampSeen> seen) {
+ShadowEdges find_shadow_edges(const Sites& sites, std::span<const LampSeen> seen) {
   const wide::SiteCells cells = cells_for(sites);
-  wide::CellBits any(cells.end());
-  wide::CellBits lit(cells.end());
-  wide::CellBits dark(cells.end());
-  for (std::size_t site = 0; site < seen.size(); ++site) {
-    const bool some = seen[site] == LampSeen::kSome;
-    const bool all = seen[site] == LampSeen::kAll;
-    const bool none = seen[site] == LampSeen::kNone;
-    const wide::SiteCells::Cell cell = cells.of(sites.positions[site]);
-    if (all || some || none) any.set(cell);
-    if (all || some) lit.set(cell);
-    if (none || some) dark.set(cell);
-  }
-  lit.dilate();
-  dark.dilate();
-  std::vector<bool> near(seen.size());
+  const Surroundings about(cells, sites, seen);
+  ShadowEdges result{.near = std::vector<bool>(seen.size()), .alone = {}};
   for (std::size_t site = 0; site < seen.size(); ++site) {
     if (seen[site] == LampSeen::kTurnedAway) continue;
     const wide::SiteCells::Cell cell = cells.of(sites.positions[site]);
-    near[site] = seen[site] == LampSeen::kRising || (lit[cell] && dark[cell]) || any.count_about(cell) < kLeastCells;
+    result.near[site] = seen[site] == LampSeen::kRising || about.hold_an_edge(cell);
+    if (seen[site] == LampSeen::kSome && about.agree(cell)) result.alone.push_back(std::uint32_t(site));
   }
-  return near;
+  return result;
 }
 
 }  // namespace isolux

@@ -7,7 +7,9 @@
 #include <cstddef>
 #include <glm/geometric.hpp>
 #include <numbers>
+#include <numeric>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "light_sources.h"
@@ -23,6 +25,7 @@ namespace {
 constexpr int kFirst = 4;
 constexpr int kOneOf = 8;  ///< or so large a part of all, if that is more
 constexpr int kMostTimes = 16;
+constexpr double kMissed = 1.0 / 64.0;  ///< of what sees a part, by the squares of its light: so much may be alone
 
 /// Who asks a sun, and what with so many rays each.
 class SunRays {
@@ -133,16 +136,57 @@ void add_whole(const Vec3& light, std::size_t site, SampleSet& samples) {
   for (std::size_t c = 0; c < channels; ++c) samples.radiance[site * channels + c] += float(light[int(c)]);
 }
 
+/// What a few rays of all sites that face a sun saw.
+struct FirstLook {
+  SunRays rays;
+  int count;  ///< of them, a site
+  std::vector<LampSeen> seen;
+};
+
+/// Whether sites tell what those close by see, as far as is known from those that saw a part. One more might have been
+/// alone: few sites can agree by chance.
+bool tell_each_other(const FirstLook& look, const Sites& sites, std::span<const std::uint32_t> alone) {
+  const auto square = [&](std::size_t site) {
+    const Vec3 light = look.rays.whole(sites.normals[site]);
+    return glm::dot(light, light);
+  };
+  double found = 0.0;
+  double count = 0.0;
+  for (std::size_t site = 0; site < look.seen.size(); ++site) {
+    if (look.seen[site] != LampSeen::kSome) continue;
+    found += square(site);
+    count += 1.0;
+  }
+  if (count == 0.0) return false;
+  const double missed = std::accumulate(alone.begin(), alone.end(), found / count,
+                                        [&](double sum, std::uint32_t site) { return sum + square(site); });
+  return missed <= kMissed * found;
+}
+
 /// Of each site that is asked.
-int rays_near_edges(const TraceSettings& settings, int first, const SunQuestions& questions,
-                    std::span<const LampSeen> seen) {
+int rays_near_edges(const TraceSettings& settings, const FirstLook& look, const std::vector<bool>& near) {
   if (settings.spread == RaySpread::kEven) return settings.rays;
-  const auto facing = double(seen.size()) - double(std::count(seen.begin(), seen.end(), LampSeen::kTurnedAway));
-  const auto asked = double(std::count(questions.asked.begin(), questions.asked.end(), true));
+  const auto facing =
+      double(look.seen.size()) - double(std::count(look.seen.begin(), look.seen.end(), LampSeen::kTurnedAway));
+  const auto asked = double(std::count(near.begin(), near.end(), true));
   int times = 1;
-  while (times < kMostTimes && first * facing + 2.0 * times * settings.rays * asked <= settings.rays * facing)
+  while (times < kMostTimes && look.count * facing + 2.0 * times * settings.rays * asked <= settings.rays * facing)
     times *= 2;
   return times * settings.rays;
+}
+
+/// Who is to be asked how often. Adds to the variance what this may leave out.
+SunQuestions ask_near_edges(const TraceSettings& settings, const FirstLook& look, SampleSet& samples) {
+  ShadowEdges edges = find_shadow_edges(samples.sites, look.seen);
+  if (!tell_each_other(look, samples.sites, edges.alone))
+    return {.asked = std::vector<bool>(look.seen.size(), true), .rays = settings.rays};
+  for (const std::uint32_t site : edges.alone) {
+    // As many are not found, which see less than a ray's share of the disc, or all but that.
+    const Vec3 wrong = look.rays.whole(samples.sites.normals[site]) / (2.0 * look.count);
+    samples.variance[site] += float(samples.channels == 1 ? wrong.x * wrong.x : glm::dot(wrong, wrong) / 3.0);
+  }
+  const int rays = rays_near_edges(settings, look, edges.near);
+  return {.asked = std::move(edges.near), .rays = rays};
 }
 
 }  // namespace
@@ -163,23 +207,23 @@ TraceCounters add_sun_light_by_edges(const Volume& volume, OuterSide outer, cons
                                      SunQuestions& questions) {
   const bool is_point = sun_disc(sun).one_minus_cosine == 0.0;
   const int first = is_point ? 1 : std::max(kFirst, settings.rays / kOneOf);
-  const SunRays few(volume, sun, number, std::size_t(first), run.seed);
-  std::vector<LampSeen> seen(samples.size(), LampSeen::kTurnedAway);
+  FirstLook look{.rays = {volume, sun, number, std::size_t(first), run.seed},
+                 .count = first,
+                 .seen = std::vector<LampSeen>(samples.size(), LampSeen::kTurnedAway)};
   TraceCounters counters = wide::trace_blocks(
       volume, samples.sites, {.outer = outer, .rays_per_site = std::size_t(first)}, run,
-      [&](const wide::SiteBlock& block, TraceCounters& part) { few.look(block, samples.sites, seen, part); });
-  if (questions.asked.empty()) {
-    questions.asked = is_point ? std::vector<bool>(samples.size()) : near_shadow_edges(samples.sites, seen);
-    questions.rays = rays_near_edges(settings, first, questions, seen);
-  }
+      [&](const wide::SiteBlock& block, TraceCounters& part) { look.rays.look(block, samples.sites, look.seen, part); });
+  if (questions.asked.empty() && is_point) questions.asked.resize(samples.size());
+  if (questions.asked.empty()) questions = ask_near_edges(settings, look, samples);
   std::vector<std::uint32_t> asked;
-  for (std::size_t site = 0; site < seen.size(); ++site) {
-    if (seen[site] == LampSeen::kTurnedAway) continue;
-    if (!is_point && (questions.asked[site] || seen[site] == LampSeen::kSome)) {
+  for (std::size_t site = 0; site < samples.size(); ++site) {
+    const LampSeen seen = look.seen[site];
+    if (seen == LampSeen::kTurnedAway) continue;
+    if (!is_point && (questions.asked[site] || seen == LampSeen::kSome)) {
       asked.push_back(std::uint32_t(site));
     } else {
       counters.known += std::uint64_t(settings.rays - first);
-      if (seen[site] == LampSeen::kAll) add_whole(few.whole(samples.sites.normals[site]), site, samples);
+      if (seen == LampSeen::kAll) add_whole(look.rays.whole(samples.sites.normals[site]), site, samples);
     }
   }
   if (asked.empty()) return counters;

