@@ -59,7 +59,7 @@ double paths_to_judge_by(std::size_t sites, const BakeSettings& settings) {
 HeldOut::HeldOut(const Volume& volume, const Scene& scene, const Sites& sites, std::vector<std::size_t> numbers,
                  const TraceSettings& settings, const Run& run)
     : numbers_(std::move(numbers)) {
-  const auto tracer = tracers().create("wide", {{"sun_edges", "false"}});
+  const auto tracer = tracers().create("wide");
   for (std::uint64_t side = 0; side < 2; ++side) {
     Run own = run;
     own.seed = mix_bits(run.seed ^ mix_bits(1 + side));

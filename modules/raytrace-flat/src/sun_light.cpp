@@ -165,7 +165,6 @@ bool tell_each_other(const FirstLook& look, const Sites& sites, std::span<const 
 
 /// Of each site that is asked.
 int rays_near_edges(const TraceSettings& settings, const FirstLook& look, const std::vector<bool>& near) {
-  if (settings.spread == RaySpread::kEven) return settings.rays;
   const auto facing =
       double(look.seen.size()) - double(std::count(look.seen.begin(), look.seen.end(), LampSeen::kTurnedAway));
   const auto asked = double(std::count(near.begin(), near.end(), true));
@@ -200,8 +199,6 @@ TraceCounters add_sun_light(const Volume& volume, OuterSide outer, const SunLigh
       [&](const wide::SiteBlock& block, TraceCounters& counters) { towards.light(block, samples, counters); });
 }
 
-bool can_find_edges(const TraceSettings& settings) { return settings.rays >= kFirst * kFirst; }
-
 TraceCounters add_sun_light_by_edges(const Volume& volume, OuterSide outer, const SunLight& sun, std::uint32_t number,
                                      const TraceSettings& settings, const Run& run, SampleSet& samples,
                                      SunQuestions& questions) {
@@ -210,9 +207,11 @@ TraceCounters add_sun_light_by_edges(const Volume& volume, OuterSide outer, cons
   FirstLook look{.rays = {volume, sun, number, std::size_t(first), run.seed},
                  .count = first,
                  .seen = std::vector<LampSeen>(samples.size(), LampSeen::kTurnedAway)};
-  TraceCounters counters = wide::trace_blocks(
-      volume, samples.sites, {.outer = outer, .rays_per_site = std::size_t(first)}, run,
-      [&](const wide::SiteBlock& block, TraceCounters& part) { look.rays.look(block, samples.sites, look.seen, part); });
+  TraceCounters counters =
+      wide::trace_blocks(volume, samples.sites, {.outer = outer, .rays_per_site = std::size_t(first)}, run,
+                         [&](const wide::SiteBlock& block, TraceCounters& part) {
+                           look.rays.look(block, samples.sites, look.seen, part);
+                         });
   if (questions.asked.empty() && is_point) questions.asked.resize(samples.size());
   if (questions.asked.empty()) questions = ask_near_edges(settings, look, samples);
   std::vector<std::uint32_t> asked;

@@ -18,13 +18,10 @@ namespace isolux {
                                           std::uint32_t number, const TraceSettings& settings, const Run& run,
                                           SampleSet& samples);
 
-/// Whether there are enough rays for a part of them to say where the edges of shadows are.
-[[nodiscard]] bool can_find_edges(const TraceSettings& settings);
-
 /// Adds the same from a few rays a site where those of all sites about it see the whole sun, whose light there is known
-/// then, or none of it (near_shadow_edges()). The others take settings.rays, or, where RaySpread::kByNoise is wanted,
-/// the most of 1, 2, 4, 8 or 16 times as many that are not more than settings.rays a site in all. Says who was asked,
-/// or asks those that it is told. \pre can_find_edges(settings)
+/// then, or none of it (find_shadow_edges()). The others take the most of 1, 2, 4, 8 or 16 times settings.rays that are
+/// not more than settings.rays a site in all. All take settings.rays where sites do not tell what those about them see.
+/// Says who was asked, or asks those that it is told. \pre can_spread(settings)
 [[nodiscard]] TraceCounters add_sun_light_by_edges(const Volume& volume, OuterSide outer, const SunLight& sun,
                                                    std::uint32_t number, const TraceSettings& settings, const Run& run,
                                                    SampleSet& samples, SunQuestions& questions);

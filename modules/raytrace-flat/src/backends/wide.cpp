@@ -20,16 +20,7 @@ namespace {
 /// Path tracing with many rays at once in the machine's widest vectors, sites sorted by isovalue and place.
 class WideTracer final : public FlatTracer {
  public:
-  struct Options {
-    PathOptions paths;
-    bool sun_edges = true;
-
-    void describe(OptionVisitor& option) {
-      paths.describe(option);
-      option("sun_edges", sun_edges,
-             {.help = "all rays to a sun near the edges of its shadows only, a few elsewhere, if those say where edges are"});
-    }
-  };
+  using Options = PathOptions;
 
   explicit WideTracer(const Options& options) : options_(options) {}
 
@@ -79,13 +70,12 @@ class WideTracer final : public FlatTracer {
 
   void add_suns(const Volume& volume, const Scene& scene, const TraceSettings& settings, const Run& run,
                 SampleSet& samples, std::vector<SunQuestions>& questions, TraceCounters& counters) const {
-    const bool by_edges = options_.sun_edges && can_find_edges(settings);
     std::size_t suns = 0;
     for (std::size_t i = 0; i < scene.lights.size(); ++i) {
       const auto* const sun = std::get_if<SunLight>(&scene.lights[i]);
       if (sun == nullptr) continue;
       const auto number = std::uint32_t(i);
-      if (!by_edges) {
+      if (!can_spread(settings)) {
         add(counters, add_sun_light(volume, scene.outer, *sun, number, settings, run, samples));
         continue;
       }
@@ -113,7 +103,7 @@ class WideTracer final : public FlatTracer {
 
   void by_paths(const Volume& volume, const Scene& scene, const TraceSettings& settings, const Run& run,
                 SampleSet& samples, SampleSet* lamps, TraceCounters& counters) const {
-    const wide::PathWaves waves(volume, scene, settings, options_.paths.limits, run.seed, samples.sites);
+    const wide::PathWaves waves(volume, scene, settings, options_.limits, run.seed, samples.sites);
     const wide::BlockRequest request{.outer = scene.outer, .rays_per_site = waves.aimer().rays()};
     add(counters,
         wide::trace_blocks(volume, samples.sites, request, run, [&](const wide::SiteBlock& block, TraceCounters& part) {

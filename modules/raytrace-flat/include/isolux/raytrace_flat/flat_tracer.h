@@ -29,8 +29,8 @@ struct TraceSettings {
   RayNets nets = RayNets::kIndependent;  ///< of the first rays; `scalar` keeps them independent
   std::optional<ValueRange> values{};    ///< of the volume, where known: saves `wide` a pass
   LampLight lamps = LampLight::kWithin;  ///< told apart, the whole is the same to the bit; `scalar` leaves it within
-  /// Without reflections, of 16 rays and more: of those under the sky of interleaved nets, and of those to suns if
-  /// `wide` finds edges (sun_edges). Other lamps get theirs of each site; `scalar` spreads evenly.
+  /// Without reflections, of 16 rays and more of interleaved nets, of those under the sky and to suns. Other lamps get
+  /// theirs of each site; `scalar` spreads evenly.
   RaySpread spread = RaySpread::kEven;
 };
 
