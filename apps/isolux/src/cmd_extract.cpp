@@ -11,7 +11,9 @@
 
 #include "commands.h"
 #include "extract_options.h"
+#include "mesh_maker.h"
 #include "parse.h"
+#include "surfaces.h"
 #include "usage.h"
 #include "vertex_light.h"
 
@@ -55,8 +57,9 @@ struct Subject {
   const Volume* floats;  ///< null without light
 };
 
-nlohmann::json mesh_settings(const ExtractOptions& options, const std::string& backend, OuterSide outer) {
-  nlohmann::json result = {{"isovalue", options.isovalue},
+nlohmann::json mesh_settings(const ExtractOptions& options, float isovalue, const std::string& backend,
+                             OuterSide outer) {
+  nlohmann::json result = {{"isovalue", isovalue},
                            {"backend", backend},
                            {"normals", options.normals},
                            {"cap", options.cap},
@@ -70,8 +73,8 @@ nlohmann::json mesh_settings(const ExtractOptions& options, const std::string& b
   return result;
 }
 
-void report_mesh(const IsoMesh& mesh, const ExtractOptions& options, const std::string& backend, OuterSide outer,
-                 Session& session) {
+/// `whose` stands before what is said of it.
+void report_mesh(const IsoMesh& mesh, const std::string& whose, Session& session) {
   const MeshMeasures measures = session.timed("measure", [&] { return measure_mesh(mesh); });
   session.report["area"] = measures.area;
   session.report["volume"] = measures.volume ? nlohmann::json(*measures.volume) : nlohmann::json();
@@ -81,8 +84,7 @@ void report_mesh(const IsoMesh& mesh, const ExtractOptions& options, const std::
   session.report["zero_area_triangles"] = measures.zero_area_triangles;
   session.report["triangles"] = mesh.n_faces();
   session.report["vertices"] = mesh.n_vertices();
-  session.report["settings"] = mesh_settings(options, backend, outer);
-  session.say(fmt::format("{} triangles, {} vertices", mesh.n_faces(), mesh.n_vertices()));
+  session.say(fmt::format("{}{} triangles, {} vertices", whose, mesh.n_faces(), mesh.n_vertices()));
 }
 
 /// Meshes are made of floats.
@@ -116,23 +118,19 @@ void warn_of_no_effect(const ExtractOptions& options, const std::optional<LightF
     session.warn("--light-values has no effect without light, or in other files than .ply");
 }
 
-VertexLight light_of(const IsoMesh& mesh, const Volume& volume, Scene scene, const std::optional<LightFile>& light,
-                     OuterSide outer, const ExtractOptions& options, Session& session) {
-  if (light && !options.exact_light) warn_outside_light(*light, options.isovalue, session);
-  if (light && options.exact_light && !light->grid.detail.covers(double(options.isovalue)))
-    session.warn(fmt::format("isovalue {} lies outside the range that the light is of: it is no help to --exact-light",
-                             options.isovalue));
-  scene.outer = outer;
-  scene.sides = LitSides::kOuter;
-  return vertex_light(mesh, volume, scene, light, outer, options, session);
+void warn_of_light(const LightFile& light, float isovalue, const ExtractOptions& options, const Session& session) {
+  if (!options.exact_light) return warn_outside_light(light, isovalue, session);
+  if (light.grid.detail.covers(double(isovalue))) return;
+  session.warn(
+      fmt::format("isovalue {} lies outside the range that the light is of: it is no help to --exact-light", isovalue));
 }
 
 /// What the file says of where it comes from.
-MeshExtras notes_of(const VolumeView& volume, const VertexLight& light, const ExtractOptions& options) {
+MeshExtras notes_of(const VolumeView& volume, const VertexLight& light, float isovalue, const ExtractOptions& options) {
   MeshExtras extras;
   const std::string source = std::filesystem::path(volume.name()).filename().string();
-  extras.name = fmt::format("{} at {}", source, options.isovalue);
-  extras.notes = {{"volume", source}, {"isovalue", fmt::format("{}", options.isovalue)}};
+  extras.name = fmt::format("{} at {}", source, isovalue);
+  extras.notes = {{"volume", source}, {"isovalue", fmt::format("{}", isovalue)}};
   // As 3D Slicer has it; other spaces have no short name.
   if (volume.space() == "left-posterior-superior") extras.notes.emplace_back("SPACE", "LPS");
   if (light.e.empty()) return extras;
@@ -142,47 +140,63 @@ MeshExtras notes_of(const VolumeView& volume, const VertexLight& light, const Ex
   return extras;
 }
 
-void extract(const Subject& subject, const BackendChoice& choice, ExtractOptions options, Session& session) {
+void write_lit_mesh(const IsoMesh& mesh, const VertexLight& light, const VolumeView& volume, float isovalue,
+                    const std::string& output, const ExtractOptions& options, Session& session) {
+  const std::vector<Rgb8> colours = shown_colours(light, options.exposure.value_or(0.0), session);
+  MeshExtras extras = notes_of(volume, light, isovalue, options);
+  std::vector<float> values;
+  if (options.light_values && holds_light(output)) values = light_values(light);
+  extras.light = values;
+  extras.light_channels = light.channels;
+  session.timed("write", [&] {
+    write_atomically_by_name(output, [&](const std::string& path) { write_mesh(mesh, colours, path, extras); });
+  });
+}
+
+void extract(const Subject& subject, const BackendChoice& choice, const ExtractOptions& options, Session& session) {
   const VolumeView& volume = subject.volume;
-  options.isovalue = options.iso.in(volume);
+  const std::vector<float> isovalues = options.iso.in(volume);
+  const std::vector<std::string> outputs = output_names(options.output, options.iso);
   std::optional<LightFile> light;
   if (options.light.given()) light = options.light.read(*subject.floats, session);
-  const Scene scene = scene_for(options, light);
+  Scene scene = scene_for(options, light);
   warn_of_no_effect(options, light, scene, session);
+  warn_coarse(volume.lattice(), session);
 
   const OuterSide outer = facing(options, light ? light_outer(*light) : scene.outer);
-  const auto extractor = session.stages.extractors.create(choice.name, choice.settings);
-  const IsoMesh mesh = session.timed("extract", [&] {
-    return extractor->extract(volume,
-                              {.isovalue = options.isovalue,
-                               .outer = outer,
-                               .normals = normal_kind(options.normals),
-                               .cap = options.cap ? CapKind::kBox : CapKind::kNone,
-                               .min_component = options.min_component},
-                              session.run);
-  });
-  // A cap closes the whole box where all of it is inside.
-  if (!options.cap || mesh.n_faces() == 0) warn_outside_range(volume, options.isovalue, session);
-  warn_coarse(volume.lattice(), session);
-  VertexLight shown;
-  if (options.is_lit() && holds_colours(options.output))
-    shown = light_of(mesh, *subject.floats, scene, light, outer, options, session);
-  const std::vector<Rgb8> colours = shown_colours(shown, options.exposure.value_or(0.0), session);
-  MeshExtras extras = notes_of(volume, shown, options);
-  std::vector<float> values;
-  if (options.light_values && holds_light(options.output)) values = light_values(shown);
-  extras.light = values;
-  extras.light_channels = shown.channels;
-  session.timed("write", [&] {
-    write_atomically_by_name(options.output, [&](const std::string& path) { write_mesh(mesh, colours, path, extras); });
-  });
+  scene.outer = outer;
+  scene.sides = LitSides::kOuter;
   // What is called outside, whichever side is shown.
   const OuterSide outside = options.side.or_outer() == LevelSetSide::kInner ? opposite(outer) : outer;
-  report_mesh(mesh, options, session.stages.extractors.info(choice.name).name, outside, session);
+  std::optional<VertexLighter> lighter;
+  if (options.is_lit() && holds_colours(options.output))
+    lighter.emplace(*subject.floats, scene, light, options, session);
+  MeshMaker maker = session.timed("extract", [&] { return MeshMaker(volume, choice, outputs.size(), session); });
+  IsoMesh mesh;
+  for_each_surface(outputs, session, [&](std::size_t number) {
+    const float isovalue = isovalues[number];
+    session.timed("extract", [&] {
+      maker.extract({.isovalue = isovalue,
+                     .outer = outer,
+                     .normals = normal_kind(options.normals),
+                     .cap = options.cap ? CapKind::kBox : CapKind::kNone,
+                     .min_component = options.min_component},
+                    mesh);
+    });
+    // A cap closes the whole box where all of it is inside.
+    if (!options.cap || mesh.n_faces() == 0) warn_outside_range(volume, isovalue, session);
+    if (lighter && light) warn_of_light(*light, isovalue, options, session);
+    const VertexLight shown = lighter ? lighter->light(mesh, isovalue) : VertexLight();
+    write_lit_mesh(mesh, shown, volume, isovalue, outputs[number], options, session);
+    report_mesh(mesh, outputs.size() > 1 ? outputs[number] + ": " : "", session);
+    session.report["settings"] =
+        mesh_settings(options, isovalue, session.stages.extractors.info(choice.name).name, outside);
+  });
 }
 
 void run_extract(const ExtractOptions& options, Session& session) {
-  require_output(options.output);
+  for (const std::string& output : output_names(options.output, options.iso)) require_output(output);
+  session.report["output"] = options.output;
   BackendChoice choice{options.backend, {}};
   apply_settings("--set", options.set, {{"extractor", &choice.settings}});
   require_choice(session.stages.extractors, choice);
@@ -205,10 +219,12 @@ void add_extract_command(CLI::App& program, Session& session) {
   const auto options = std::make_shared<ExtractOptions>();
   options->volume.add_to(command, session);
   options->iso.add_to(command);
-  session.writes(
-      command.add_option("-o,--output", options->output, "the mesh to write: .ply, .glb, .obj, .off or .stl")
-          ->required()
-          ->type_name("MESH.ply"));
+  command
+      .add_option("-o,--output", options->output,
+                  "the mesh to write: .ply, .glb, .obj, .off or .stl; of several isovalues with {iso} or %03d in it")
+      ->required()
+      ->type_name("MESH.ply");
+  session.writes(outputs_of(options->output, options->iso));
   options->light.add_to(command, session);
   options->side.add_to(
       command, "whose light, and where the normals point: outer (default), or inner, which --light needs to have");

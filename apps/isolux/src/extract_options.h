@@ -19,7 +19,6 @@ struct ExtractOptions {
   SideOption side;
   TraceOptions trace;
   IsovalueOption iso;
-  float isovalue = 0.0f;  ///< `iso` in the volume, once that is read
   std::string output;
   std::string backend;
   OuterOption outer;

@@ -2,7 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <string_view>
 #include <variant>
 
@@ -15,36 +17,92 @@ namespace isolux {
 namespace {
 
 constexpr std::string_view kSigma = "sigma";
+constexpr std::uint64_t kMostSteps = 100000;
 
-/// The number before "sigma", or all of the text.
-std::string number_in(const std::string& text) {
-  return text.ends_with(kSigma) ? text.substr(0, text.size() - kSigma.size()) : text;
+/// As it was told.
+struct ToldIsovalue {
+  double number = 0.0;
+  bool in_sigmas = false;
+};
+
+/// \throw UsageError
+ToldIsovalue told_isovalue(const std::string& text) {
+  const bool in_sigmas = text.ends_with(kSigma);
+  const std::string number = in_sigmas ? text.substr(0, text.size() - kSigma.size()) : text;
+  if (!finite_number()(number).empty())
+    throw UsageError(fmt::format("'{}': allowed is a number from -3.4e38 to 3.4e38, also with sigma behind it", text));
+  return {.number = parse_numbers("--iso", number, 1)[0], .in_sigmas = in_sigmas};
+}
+
+/// "FIRST:LAST:COUNT". \throw UsageError
+std::vector<ToldIsovalue> isovalue_steps(const std::string& text) {
+  const auto parts = split(text, ':');
+  if (parts.size() != 3) throw UsageError(fmt::format("'{}': allowed is FIRST:LAST:COUNT", text));
+  const ToldIsovalue first = told_isovalue(parts[0]);
+  const ToldIsovalue last = told_isovalue(parts[1]);
+  if (first.in_sigmas != last.in_sigmas)
+    throw UsageError(fmt::format("'{}': allowed is sigma behind both FIRST and LAST, or behind neither", text));
+  std::string count = parts[2];
+  if (!whole_number(2, kMostSteps)(count).empty())
+    throw UsageError(fmt::format("'{}': allowed as COUNT is a whole number from 2 to {}", text, kMostSteps));
+  std::vector<ToldIsovalue> steps(std::stoul(count), first);
+  for (std::size_t i = 0; i < steps.size(); ++i)
+    steps[i].number = std::lerp(first.number, last.number, double(i) / double(steps.size() - 1));
+  return steps;
+}
+
+/// \throw UsageError
+std::vector<ToldIsovalue> told_isovalues(const std::string& text) {
+  std::vector<ToldIsovalue> all;
+  for (const std::string& part : split(text, ',')) {
+    const bool is_range = part.find(':') != std::string::npos;
+    const auto some = is_range ? isovalue_steps(part) : std::vector<ToldIsovalue>{told_isovalue(part)};
+    all.insert(all.end(), some.begin(), some.end());
+  }
+  return all;
 }
 
 }  // namespace
 
 void IsovalueOption::add_to(CLI::App& command) {
-  const auto is_isovalue = [](const std::string& text) {
-    const std::string wrong = finite_number()(number_in(text));
-    if (wrong.empty()) return wrong;
-    return fmt::format("'{}': allowed is a number from -3.4e38 to 3.4e38, also with sigma behind it", text);
+  const auto are_isovalues = [](const std::string& text) {
+    try {
+      static_cast<void>(told_isovalues(text));
+    } catch (const UsageError& error) {
+      return std::string(error.what());
+    }
+    return std::string();
   };
   command
       .add_option("--iso", text_,
-                  "isovalue, or as many standard deviations above the mean of the volume's values, such as 2.5sigma")
+                  "isovalue, or as many standard deviations above the mean of the volume's values, such as 2.5sigma; "
+                  "several as A,B,C or FIRST:LAST:COUNT")
       ->required()
       ->type_name("H|Nsigma")
-      ->check(is_isovalue);
+      ->check(are_isovalues);
 }
 
-float IsovalueOption::in(const VolumeView& volume) const {
-  const double number = parse_numbers("--iso", number_in(text_), 1)[0];
-  if (!text_.ends_with(kSigma)) return float(number);
-  const ValueMoments moments = std::visit([](const auto& values) { return value_moments(values); }, volume.voxels());
-  const auto isovalue = float(moments.mean + number * moments.standard_deviation);
-  if (std::isfinite(isovalue)) return isovalue;
-  throw UsageError(fmt::format("--iso = '{}': of a mean of {:g} and a standard deviation of {:g} floats do not hold it",
-                               text_, moments.mean, moments.standard_deviation));
+std::vector<std::string> IsovalueOption::texts() const {
+  std::vector<std::string> texts;
+  for (const ToldIsovalue& told : told_isovalues(text_))
+    texts.push_back(fmt::format("{}{}", float(told.number), told.in_sigmas ? kSigma : ""));
+  return texts;
+}
+
+std::vector<float> IsovalueOption::in(const VolumeView& volume) const {
+  const auto all = told_isovalues(text_);
+  ValueMoments moments;
+  if (std::any_of(all.begin(), all.end(), [](const ToldIsovalue& told) { return told.in_sigmas; }))
+    moments = std::visit([](const auto& values) { return value_moments(values); }, volume.voxels());
+  std::vector<float> isovalues;
+  for (const ToldIsovalue& told : all) {
+    isovalues.push_back(float(told.in_sigmas ? moments.mean + told.number * moments.standard_deviation : told.number));
+    if (!std::isfinite(isovalues.back()))
+      throw UsageError(
+          fmt::format("--iso = '{}': of a mean of {:g} and a standard deviation of {:g} floats do not hold it", text_,
+                      moments.mean, moments.standard_deviation));
+  }
+  return isovalues;
 }
 
 }  // namespace isolux

@@ -4,16 +4,21 @@
 
 #include <CLI/App.hpp>
 #include <string>
+#include <vector>
 
 namespace isolux {
 
 /// --iso H, or Nsigma: N standard deviations above the mean of the volume's values, as maps of cryo-electron microscopy
-/// are contoured.
+/// are contoured; of commands that take several also lists A,B,C and steps FIRST:LAST:COUNT of these.
 class IsovalueOption {
  public:
+  /// One or several, required.
   void add_to(CLI::App& command);
-  /// The isovalue in this volume. Cost: of sigmas two passes. \throw UsageError if floats do not hold it
-  [[nodiscard]] float in(const VolumeView& volume) const;
+  [[nodiscard]] bool given() const { return !text_.empty(); }
+  /// Each as the command line tells it, in the fewest digits: "-0.3", "2.5sigma".
+  [[nodiscard]] std::vector<std::string> texts() const;
+  /// The isovalues in this volume. Cost: of sigmas two passes. \throw UsageError if floats do not hold one
+  [[nodiscard]] std::vector<float> in(const VolumeView& volume) const;
 
  private:
   std::string text_;

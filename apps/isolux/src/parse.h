@@ -10,6 +10,8 @@ namespace isolux {
 
 /// Readers of option values; each throws UsageError naming the option, the text and what is allowed.
 
+/// The parts between separators: one more than there are separators.
+[[nodiscard]] std::vector<std::string> split(const std::string& text, char separator);
 /// "64x64x32": whole numbers of at least 1. `pattern` says what is allowed.
 [[nodiscard]] Index3 parse_size3(const std::string& option, const std::string& text, const char* pattern = "NXxNYxNZ");
 /// "800x600"

@@ -75,6 +75,8 @@ void Session::write_report() const {
   complete["settings"]["threads"] = thread_count(run);
   complete["settings"]["seed"] = run.seed;
   shorten_isovalues(complete["settings"]);
+  if (const auto surfaces = complete.find("surfaces"); surfaces != complete.end())
+    for (nlohmann::json& surface : *surfaces) shorten_isovalues(surface["settings"]);
   write_atomically(report_path_, [&](std::ostream& out) {
     out << complete.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) << '\n';
   });

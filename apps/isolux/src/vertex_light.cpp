@@ -3,10 +3,8 @@
 #include <fmt/format.h>
 #include <isolux/bake/light_metadata.h>
 #include <isolux/bake/light_on_box.h>
-#include <isolux/bake/light_points.h>
 #include <isolux/mc_extract/cap_vertices.h>
 #include <isolux/render/image.h>
-#include <isolux/resample/light_reader.h>
 
 #include <algorithm>
 #include <cmath>
@@ -49,85 +47,84 @@ SurfaceAndCap parts_of(const IsoMesh& mesh, const Lattice& volume, bool is_cappe
   return parts;
 }
 
-/// Light traced at points, with a baked one as control variate if there is one of their level set.
-PointLight exact_light(const std::vector<Vec3f>& positions, const Volume& volume, const Scene& scene,
-                       const std::optional<LightFile>& baked, const ExtractOptions& options, Session& session) {
-  const BackendChoice tracer{options.trace.tracer(), {}};
-  TraceSettings settings = options.trace.settings();
-  if (baked && !options.trace.bounces_given()) settings.bounces = light_bounces(*baked);
-  if (!baked || !baked->grid.detail.covers(double(options.isovalue)))
-    return light_points(volume, scene, positions, settings, tracer, session.stages, session.run);
-  const IlluminationGrid& grid = options.light.of_side(*baked, side_towards(*baked, scene.outer));
-  const LightReader reader(volume, grid, TexelStorage::kBricks, session.run);
-  return light_points(volume, scene, positions, settings, tracer, session.stages, session.run, reader);
+}  // namespace
+
+const LightReader& VertexLighter::reader() {
+  if (!reader_) {
+    const IlluminationGrid& grid = options_.light.of_side(*baked_, side_towards(*baked_, scene_.outer));
+    reader_.emplace(volume_, grid, TexelStorage::kBricks, session_.run);
+  }
+  return *reader_;
 }
 
-std::vector<Vec3f> baked_light(const std::vector<Vec3f>& positions, const Volume& volume, const LightFile& light,
-                               OuterSide outer, const ExtractOptions& options, const Run& run) {
-  const IlluminationGrid& grid = options.light.of_side(light, side_towards(light, outer));
-  const LightReader reader(volume, grid, TexelStorage::kBricks, run);
+/// Light traced at points, with a baked one as control variate if there is one of their level set.
+PointLight VertexLighter::exact_light(const std::vector<Vec3f>& positions, float isovalue) {
+  const BackendChoice tracer{options_.trace.tracer(), {}};
+  TraceSettings settings = options_.trace.settings();
+  if (baked_ && !options_.trace.bounces_given()) settings.bounces = light_bounces(*baked_);
+  if (!baked_ || !baked_->grid.detail.covers(double(isovalue)))
+    return light_points(volume_, scene_, positions, settings, tracer, session_.stages, session_.run);
+  return light_points(volume_, scene_, positions, settings, tracer, session_.stages, session_.run, reader());
+}
+
+std::vector<Vec3f> VertexLighter::baked_light(const std::vector<Vec3f>& positions, float isovalue) {
+  const LightReader& light = reader();
   std::vector<Vec3f> radiance;
   radiance.reserve(positions.size());
   for (const Vec3f& p : positions)
-    radiance.push_back(reader.at_index(volume.lattice().frame.index(Vec3(p)), double(options.isovalue)));
+    radiance.push_back(light.at_index(volume_.lattice().frame.index(Vec3(p)), double(isovalue)));
   return radiance;
 }
 
-/// Whose light a cap beside baked light is in.
-Scene scene_of_cap(const LightFile& baked, const ExtractOptions& options, const Session& session) {
-  if (options.trace.scene_given()) return options.trace.scene();
-  if (const auto scene = light_scene(baked)) return *scene;
-  session.warn(
+/// Whose light a cap is in: the scene that is traced, or that of the baked light.
+const Scene& VertexLighter::scene_of_cap() {
+  if (options_.exact_light) return scene_;
+  if (scene_of_cap_) return *scene_of_cap_;
+  if (options_.trace.scene_given()) return scene_of_cap_.emplace(options_.trace.scene());
+  if (auto scene = light_scene(*baked_)) return scene_of_cap_.emplace(*std::move(scene));
+  session_.warn(
       "--cap: the light does not tell its whole scene, so the cap is lit by a white sky; give it with --scene");
-  return {};
+  return scene_of_cap_.emplace();
 }
 
-PointLight cap_light(const VertexPlaces& cap, const IsoMesh& mesh, const Lattice& volume, const Scene& scene,
-                     const ExtractOptions& options, const Session& session) {
+PointLight VertexLighter::cap_light(const std::vector<std::uint32_t>& vertices, const std::vector<Vec3f>& positions,
+                                    const IsoMesh& mesh) {
   std::vector<Vec3f> normals;
-  normals.reserve(cap.vertices.size());
-  for (const std::uint32_t v : cap.vertices) {
+  normals.reserve(vertices.size());
+  for (const std::uint32_t v : vertices) {
     const auto& n = mesh.normal(OpenMesh::VertexHandle(int(v)));
     normals.emplace_back(n[0], n[1], n[2]);
   }
-  return light_on_box(volume, scene, cap.positions, normals, options.trace.settings(), {options.trace.tracer(), {}},
-                      session.stages, session.run);
+  return light_on_box(volume_.lattice(), scene_of_cap(), positions, normals, options_.trace.settings(),
+                      {options_.trace.tracer(), {}}, session_.stages, session_.run);
 }
 
-}  // namespace
-
-VertexLight vertex_light(const IsoMesh& mesh, const Volume& volume, const Scene& scene,
-                         const std::optional<LightFile>& baked, OuterSide outer, const ExtractOptions& options,
-                         Session& session) {
+VertexLight VertexLighter::light(const IsoMesh& mesh, float isovalue) {
   VertexLight result;
   result.e.assign(mesh.n_vertices(), Vec3f(0.0f));
-  const SurfaceAndCap parts = parts_of(mesh, volume.lattice(), options.cap);
+  const SurfaceAndCap parts = parts_of(mesh, volume_.lattice(), options_.cap);
+  const std::vector<Vec3f>& positions = parts.surface.positions;
   std::uint64_t rays = 0;
-  if (options.exact_light) {
-    const PointLight light = session.timed(
-        "trace", [&] { return exact_light(parts.surface.positions, volume, scene, baked, options, session); });
+  if (options_.exact_light) {
+    const PointLight light = session_.timed("trace", [&] { return exact_light(positions, isovalue); });
     parts.surface.assign(light.radiance, result.e);
-    result.surface = surface_colour(scene, options.isovalue);
-    result.channels = is_grey(scene) ? 1 : 3;
+    result.surface = surface_colour(scene_, isovalue);
+    result.channels = is_grey(scene_) ? 1 : 3;
     rays = light.counters.rays;
-    session.report["rmse_estimate"] = light.rmse_estimate;
+    session_.report["rmse_estimate"] = light.rmse_estimate;
   } else {
-    parts.surface.assign(
-        session.timed(
-            "light", [&] { return baked_light(parts.surface.positions, volume, *baked, outer, options, session.run); }),
-        result.e);
-    result.surface = surface_colour(*baked, options.isovalue);
-    result.channels = baked->grid.channels;
+    parts.surface.assign(session_.timed("light", [&] { return baked_light(positions, isovalue); }), result.e);
+    result.surface = surface_colour(*baked_, isovalue);
+    result.channels = baked_->grid.channels;
   }
   if (!parts.cap.vertices.empty()) {
-    const Scene lit = options.exact_light ? scene : scene_of_cap(*baked, options, session);
     const PointLight light =
-        session.timed("trace", [&] { return cap_light(parts.cap, mesh, volume.lattice(), lit, options, session); });
+        session_.timed("trace", [&] { return cap_light(parts.cap.vertices, parts.cap.positions, mesh); });
     parts.cap.assign(light.radiance, result.e);
-    if (!is_grey(lit)) result.channels = 3;
+    if (!is_grey(scene_of_cap())) result.channels = 3;
     rays += light.counters.rays;
   }
-  if (rays > 0 || options.exact_light) session.report["rays"] = rays;
+  if (rays > 0 || options_.exact_light) session_.report["rays"] = rays;
   return result;
 }
 

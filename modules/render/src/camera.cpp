@@ -37,20 +37,8 @@ Camera turned_camera(const View& view) {
   return camera;
 }
 
-/// Across one direction of the picture: between which places the middle of all views that hold the points may be. The
-/// less the eye is moved back, the further they are apart.
-struct Reach {
-  double low = std::numeric_limits<double>::infinity();
-  double high = -std::numeric_limits<double>::infinity();
-
-  /// A point `place` to the side and at `depth`, for a view half as wide as `half` times its depth.
-  void add(double place, double depth, double half) {
-    low = std::min(low, place + half * depth);
-    high = std::max(high, place - half * depth);
-  }
-  [[nodiscard]] double middle() const { return 0.5 * (low + high); }
-  [[nodiscard]] double half_width() const { return 0.5 * (high - low); }
-};
+constexpr double kInfinitelyFar = std::numeric_limits<double>::infinity();
+constexpr double kInner = 0.98;  // of the picture's width and height: what framed points may fill
 
 }  // namespace
 
@@ -88,30 +76,48 @@ Camera orbit_camera(const Lattice& volume, double azimuth_deg, double elevation_
   return orbit_camera(volume, View{.azimuth_deg = azimuth_deg, .elevation_deg = elevation_deg}, aspect);
 }
 
-Camera framing_camera(std::span<const Vec3f> points, const View& view, double aspect) {
-  if (points.empty()) throw InvalidInput("a camera that frames points: there are none");
-  constexpr double kInner = 0.98;  // of the picture's width and height
-  Camera camera = turned_camera(view);
-  const bool is_parallel = view.projection == Projection::kOrthographic;
-  const double half = is_parallel ? 0.0 : kInner * camera.half_height;
-  // A point at depth f is in view of an eye at depth -d, c to the side, if |place - c| <= half (f + d): both ends of
-  // all these intervals are met by the smallest d with c in the middle.
-  const Vec3 origin(points.front());
-  Reach across;
-  Reach upwards;
-  double nearest = std::numeric_limits<double>::infinity();
+// A point at depth f is in view of an eye at depth -d, c to the side, if |place - c| <= half (f + d): both ends of all
+// these intervals are met by the smallest d with c in the middle.
+void Framing::Reach::add(double place, double depth, double half) {
+  low = std::min(low, place + half * depth);
+  high = std::max(high, place - half * depth);
+}
+
+Framing::Framing(const View& view, double aspect)
+    : turned_(turned_camera(view)),
+      aspect_(aspect),
+      half_(view.projection == Projection::kOrthographic ? 0.0 : kInner * turned_.half_height),
+      across_{.low = kInfinitelyFar, .high = -kInfinitelyFar},
+      upwards_(across_),
+      nearest_(kInfinitelyFar) {}
+
+void Framing::add(std::span<const Vec3f> points) {
+  if (empty_ && !points.empty()) origin_ = Vec3(points.front());
+  empty_ = empty_ && points.empty();
   for (const Vec3f& point : points) {
-    const Vec3 p = Vec3(point) - origin;
-    const double depth = glm::dot(p, camera.forward);
-    across.add(glm::dot(p, camera.right), depth, half * aspect);
-    upwards.add(glm::dot(p, camera.up), depth, half);
-    nearest = std::min(nearest, depth);
+    const Vec3 p = Vec3(point) - origin_;
+    const double depth = glm::dot(p, turned_.forward);
+    across_.add(glm::dot(p, turned_.right), depth, half_ * aspect_);
+    upwards_.add(glm::dot(p, turned_.up), depth, half_);
+    nearest_ = std::min(nearest_, depth);
   }
-  const double wanted = std::max(across.half_width() / aspect, upwards.half_width());
-  const double distance = is_parallel ? wanted - nearest : wanted / half;
+}
+
+Camera Framing::camera() const {
+  if (empty_) throw InvalidInput("a camera that frames points: there are none");
+  Camera camera = turned_;
+  const bool is_parallel = camera.projection == Projection::kOrthographic;
+  const double wanted = std::max(across_.half_width() / aspect_, upwards_.half_width());
+  const double distance = is_parallel ? wanted - nearest_ : wanted / half_;
   if (is_parallel) camera.half_height = wanted / kInner;
-  camera.eye = origin + across.middle() * camera.right + upwards.middle() * camera.up - distance * camera.forward;
+  camera.eye = origin_ + across_.middle() * camera.right + upwards_.middle() * camera.up - distance * camera.forward;
   return camera;
+}
+
+Camera framing_camera(std::span<const Vec3f> points, const View& view, double aspect) {
+  Framing framing(view, aspect);
+  framing.add(points);
+  return framing.camera();
 }
 
 }  // namespace isolux

@@ -2,7 +2,6 @@
 #include <isolux/core/error.h>
 #include <isolux/core/parallel.h>
 #include <isolux/core/random.h>
-#include <isolux/raytrace_flat/level_set_intersector.h>
 #include <isolux/render/render.h>
 
 #include <algorithm>
@@ -16,13 +15,14 @@ namespace {
 /// One picture's constants, and the radiance of single rays.
 class Raycaster {
  public:
-  Raycaster(const Volume& volume, const Camera& camera, const RenderSettings& settings, const Shader& shader)
+  Raycaster(const TrilinearField& field, const LevelSetIntersector& intersector, const Camera& camera,
+            const RenderSettings& settings, const Shader& shader)
       : camera_(camera),
         settings_(settings),
         shader_(shader),
-        field_(volume),
-        intersector_(volume),
-        world_to_index_(glm::inverse(volume.lattice().frame.axes)) {}
+        field_(field),
+        intersector_(intersector),
+        world_to_index_(glm::inverse(field.lattice().frame.axes)) {}
 
   void draw_pixel(int x, int y, std::uint64_t seed, Image& image) const {
     RandomStream random(seed, std::uint64_t(y) * std::uint64_t(settings_.width) + std::uint64_t(x));
@@ -78,8 +78,8 @@ class Raycaster {
   const Camera& camera_;
   const RenderSettings& settings_;
   const Shader& shader_;
-  TrilinearField field_;
-  LevelSetIntersector intersector_;
+  const TrilinearField& field_;
+  const LevelSetIntersector& intersector_;
   Mat3 world_to_index_;
 };
 
@@ -93,21 +93,25 @@ float local_light(const SurfacePoint& point) {
 
 }  // namespace
 
-Image render(const Volume& volume, const Camera& camera, const RenderSettings& settings, const Shader& shader,
-             const Run& run) {
+Image Renderer::draw(const Camera& camera, const RenderSettings& settings, const Shader& shader, const Run& run) const {
   if (settings.width < 1 || settings.height < 1 || settings.supersampling < 1) {
     throw InvalidInput(fmt::format("a picture of {}x{} pixels with {}x{} rays each: all must be at least 1",
                                    settings.width, settings.height, settings.supersampling, settings.supersampling));
   }
   Image image(settings.width, settings.height);
   if (!settings.background) image.coverage.assign(image.pixels.size(), 0.0f);
-  const Raycaster raycaster(volume, camera, settings, shader);
+  const Raycaster raycaster(field_, intersector_, camera, settings, shader);
   parallel_blocks(std::size_t(settings.height), 4, run, "render", [&](const Block& rows) {
     for (auto y = int(rows.begin); y < int(rows.end); ++y) {
       for (int x = 0; x < settings.width; ++x) raycaster.draw_pixel(x, y, run.seed, image);
     }
   });
   return image;
+}
+
+Image render(const Volume& volume, const Camera& camera, const RenderSettings& settings, const Shader& shader,
+             const Run& run) {
+  return Renderer(volume).draw(camera, settings, shader, run);
 }
 
 Shader global_shader(LightAt light, const SurfaceColour& colour) {

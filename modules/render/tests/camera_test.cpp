@@ -83,6 +83,33 @@ TEST(Camera, FramesPointsFromSideToSide) {
   EXPECT_THROW((void)framing_camera({}, {}, kAspect), InvalidInput);
 }
 
+TEST(Camera, FramesPointsThatComeBitByBit) {
+  const std::vector<Vec3f> points = {{0, 0, 0}, {1, 2, 3}, {-4, 1, 0}, {2, -3, 5}};
+  for (const Projection projection : {Projection::kPerspective, Projection::kOrthographic}) {
+    const View view{.projection = projection};
+    Framing framing(view, kAspect);
+    EXPECT_TRUE(framing.empty());
+    EXPECT_THROW((void)framing.camera(), InvalidInput);
+    framing.add({});
+    for (const Vec3f& point : points) framing.add({&point, 1});
+    ASSERT_FALSE(framing.empty());
+    const Camera whole = framing_camera(points, view, kAspect);
+    EXPECT_EQ(framing.camera().eye, whole.eye);
+    EXPECT_EQ(framing.camera().half_height, whole.half_height);
+  }
+}
+
+TEST(Renderer, DrawsOneIsovalueAfterTheOther) {
+  const Volume ball = sphere(24);
+  const Camera camera = orbit_camera(ball.lattice(), {}, kAspect);
+  const Renderer renderer(ball);
+  for (const float isovalue : {-0.4f, -0.2f, -0.3f}) {
+    const RenderSettings settings{.width = 30, .height = 20, .isovalue = isovalue};
+    EXPECT_EQ(renderer.draw(camera, settings, normal_shader(), {}).pixels,
+              render(ball, camera, settings, normal_shader(), {}).pixels);
+  }
+}
+
 TEST(Camera, OrthographicKeepsSizes) {
   const Volume ball = sphere(32);
   RenderSettings settings{.width = 90, .height = 60, .supersampling = 2, .isovalue = -kBall};

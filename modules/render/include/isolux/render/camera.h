@@ -49,4 +49,35 @@ struct View {
 /// InvalidInput without points, or if `up` is not a direction
 [[nodiscard]] Camera framing_camera(std::span<const Vec3f> points, const View& view, double aspect);
 
+/// The same of points that come bit by bit, such as those of one isosurface after the other.
+class Framing {
+ public:
+  /// \throw InvalidInput if `up` is not a direction
+  Framing(const View& view, double aspect);
+  void add(std::span<const Vec3f> points);
+  [[nodiscard]] bool empty() const { return empty_; }
+  /// \throw InvalidInput without points
+  [[nodiscard]] Camera camera() const;
+
+ private:
+  /// Across one direction of the picture: between which places the middle of all views that hold the points may be. The
+  /// less the eye is moved back, the further they are apart.
+  struct Reach {
+    double low;
+    double high;
+    void add(double place, double depth, double half);
+    [[nodiscard]] double middle() const { return 0.5 * (low + high); }
+    [[nodiscard]] double half_width() const { return 0.5 * (high - low); }
+  };
+
+  Camera turned_;
+  double aspect_;
+  double half_;  ///< of the view's height at depth 1, without the margin; 0 if orthographic
+  bool empty_ = true;
+  Vec3 origin_{0.0};
+  Reach across_;
+  Reach upwards_;
+  double nearest_;
+};
+
 }  // namespace isolux

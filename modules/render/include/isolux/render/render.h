@@ -4,6 +4,7 @@
 #include <isolux/core/run.h>
 #include <isolux/core/surface_colour.h>
 #include <isolux/core/volume.h>
+#include <isolux/raytrace_flat/level_set_intersector.h>
 #include <isolux/render/camera.h>
 #include <isolux/render/image.h>
 
@@ -35,8 +36,25 @@ struct RenderSettings {
   std::optional<LevelSetSide> only{};            ///< shown alone; the camera looks through the other side
 };
 
-/// Casts rays at the level set {f = isovalue} of the trilinear field itself, not at a mesh of it. The same bits for any
-/// number of threads. \pre require_usable(volume). \throw InvalidInput for an empty picture; Cancelled
+/// Draws level sets of one volume. What it needs to know of the volume beforehand it finds out once, in a pass that
+/// costs a picture's tenth or so. Immutable, callable from many threads; the volume must outlive it.
+class Renderer {
+ public:
+  /// \pre require_usable(volume)
+  explicit Renderer(const Volume& volume) : field_(volume), intersector_(volume) {}
+  explicit Renderer(Volume&& volume) = delete;
+
+  /// Casts rays at the level set {f = isovalue} of the trilinear field itself, not at a mesh of it. The same bits for
+  /// any number of threads. \throw InvalidInput for an empty picture; Cancelled
+  [[nodiscard]] Image draw(const Camera& camera, const RenderSettings& settings, const Shader& shader,
+                           const Run& run) const;
+
+ private:
+  TrilinearField field_;
+  LevelSetIntersector intersector_;
+};
+
+/// A Renderer's only picture. \pre, \throw as there
 [[nodiscard]] Image render(const Volume& volume, const Camera& camera, const RenderSettings& settings,
                            const Shader& shader, const Run& run);
 
