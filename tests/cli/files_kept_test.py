@@ -12,7 +12,7 @@ COMMANDS = {
     "info": ((), ("VOLUME",), ("--report",)),
     "extract": (("--iso", -0.3), ("VOLUME", "--light", "--scene"), ("--output", "--report")),
     "bake": (("--rays", 1), ("VOLUME", "--scene"), ("--output", "--error-grid", "--report")),
-    "render": (("--iso", -0.3), ("VOLUME", "--light"), ("--output", "--report")),
+    "render": (("--iso", -0.3), ("VOLUME", "--light", "--scene"), ("--output", "--report")),
     "probe": ((), ("VOLUME", "--light", "--points"), ("--output", "--report")),
     "convert": ((), ("VOLUME",), ("--report", "OUT")),
 }

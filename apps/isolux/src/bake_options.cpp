@@ -15,12 +15,13 @@ const std::vector<std::pair<std::string, int>> kQualities{{"draft", 16}, {"good"
 
 }  // namespace
 
-void TraceOptions::add_to(CLI::App& command, Session& session) {
+void TraceOptions::add_scene_to(CLI::App& command, Session& session, const std::string& help) {
   session.reads({.name = "--scene", .paths = [this] { return scene_files(scene_); }});
-  command
-      .add_option("--scene", scene_,
-                  "environment, lights, albedo and emission (default: uniform white sky, albedo 0.8)")
-      ->type_name("SCENE.json");
+  command.add_option("--scene", scene_, help)->type_name("SCENE.json");
+}
+
+void TraceOptions::add_to(CLI::App& command, Session& session) {
+  add_scene_to(command, session, "environment, lights, albedo and emission (default: uniform white sky, albedo 0.8)");
   command.add_option("--bounces", bounces_, "reflections: a number, or all (default)")->type_name("B|all");
   command.add_option("--quality", quality_, "draft, good (default) or reference: 16, 64 or 1024 rays a site")
       ->check(CLI::IsMember({"draft", "good", "reference"}));

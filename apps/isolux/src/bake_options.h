@@ -15,6 +15,8 @@ namespace isolux {
 class TraceOptions {
  public:
   void add_to(CLI::App& command, Session& session);
+  /// --scene alone.
+  void add_scene_to(CLI::App& command, Session& session, const std::string& help);
   /// \throw UsageError, IoError, InvalidInput
   [[nodiscard]] Scene scene() const;
   [[nodiscard]] bool scene_given() const { return !scene_.empty(); }

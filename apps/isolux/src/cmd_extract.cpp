@@ -62,8 +62,8 @@ nlohmann::json mesh_settings(const ExtractOptions& options, float isovalue, cons
   nlohmann::json result = {{"isovalue", isovalue},
                            {"backend", backend},
                            {"normals", options.normals},
-                           {"cap", options.cap},
-                           {"min_component", options.min_component},
+                           {"cap", options.parts.cap},
+                           {"min_component", options.parts.min_component},
                            {"side", options.side.name()},
                            {"outer", name_of(outer)},
                            {"exact_light", options.exact_light}};
@@ -106,9 +106,9 @@ void warn_of_no_effect(const ExtractOptions& options, const std::optional<LightF
     session.warn(fmt::format("{}: {} files have no colours: {} has no effect but for the side that is outside",
                              options.output, std::filesystem::path(options.output).extension().string(),
                              options.light.given() ? "--light" : "--exact-light"));
-  if (!options.exact_light && !(light && options.cap) && options.trace.says_how_to_trace())
+  if (!options.exact_light && !(light && options.parts.cap) && options.trace.says_how_to_trace())
     session.warn("--bounces, --quality, --rays and --tracer have no effect without --exact-light");
-  const bool is_of_cap = light && options.cap && !light_scene(*light);
+  const bool is_of_cap = light && options.parts.cap && !light_scene(*light);
   if (light && !options.exact_light && options.trace.scene_given() && !is_of_cap)
     session.warn("--scene has no effect with --light unless --exact-light is given");
   if (!options.is_lit() && options.trace.scene_given() && scene.outer == Scene{}.outer)
@@ -176,15 +176,12 @@ void extract(const Subject& subject, const BackendChoice& choice, const ExtractO
   for_each_surface(outputs, session, [&](std::size_t number) {
     const float isovalue = isovalues[number];
     session.timed("extract", [&] {
-      maker.extract({.isovalue = isovalue,
-                     .outer = outer,
-                     .normals = normal_kind(options.normals),
-                     .cap = options.cap ? CapKind::kBox : CapKind::kNone,
-                     .min_component = options.min_component},
-                    mesh);
+      ExtractSettings settings = options.parts.settings(isovalue, outer);
+      settings.normals = normal_kind(options.normals);
+      maker.extract(settings, mesh);
     });
     // A cap closes the whole box where all of it is inside.
-    if (!options.cap || mesh.n_faces() == 0) warn_outside_range(volume, isovalue, session);
+    if (!options.parts.cap || mesh.n_faces() == 0) warn_outside_range(volume, isovalue, session);
     if (lighter && light) warn_of_light(*light, isovalue, options, session);
     const VertexLight shown = lighter ? lighter->light(mesh, isovalue) : VertexLight();
     write_lit_mesh(mesh, shown, volume, isovalue, outputs[number], options, session);
@@ -239,11 +236,7 @@ void add_extract_command(CLI::App& program, Session& session) {
       ->type_name("STOPS");
   command.add_flag("--light-values", options->light_values,
                    "the light itself, e, as float properties of a .ply file: quality, or e_r, e_g and e_b");
-  command.add_flag("--cap", options->cap,
-                   "close the surface where it meets the box; in light, the cap has that of the box's faces");
-  command.add_option("--min-component", options->min_component, "leave out connected parts of fewer triangles")
-      ->transform(whole_number(0, std::uint64_t(1) << 32))
-      ->type_name("N");
+  options->parts.add_to(command);
   command
       .add_option(
           "--normals", options->normals,

@@ -1,11 +1,11 @@
 #pragma once
 
-#include <cstddef>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "bake_options.h"
+#include "cap_options.h"
 #include "isovalue_option.h"
 #include "light_options.h"
 #include "volume_options.h"
@@ -26,8 +26,7 @@ struct ExtractOptions {
   bool exact_light = false;
   std::optional<double> exposure;
   bool light_values = false;
-  bool cap = false;
-  std::size_t min_component = 0;
+  CapOptions parts;
   std::string normals = "gradient";
 
   [[nodiscard]] bool is_lit() const { return light.given() || exact_light; }

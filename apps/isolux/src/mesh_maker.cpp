@@ -3,9 +3,7 @@
 namespace isolux {
 
 MeshMaker::MeshMaker(const VolumeView& volume, const BackendChoice& choice, std::size_t meshes, const Session& session)
-    : volume_(volume),
-      run_(session.run),
-      extractor_(session.stages.extractors.create(choice.name, choice.settings)) {
+    : volume_(volume), run_(session.run), extractor_(session.stages.extractors.create(choice.name, choice.settings)) {
   if (meshes > 1 && session.stages.extractors.info(choice.name).name == "marching_cubes") sweep_.emplace(volume, run_);
 }
 

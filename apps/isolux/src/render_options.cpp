@@ -50,23 +50,21 @@ void add_framing_options(CLI::App& command, RenderOptions& options) {
 void RenderOptions::add_to(CLI::App& command, Session& session) {
   volume.add_to(command, session);
   iso.add_to(command);
-  command
-      .add_option("-o,--output", output, "the picture to write; of several isovalues with {iso} or %03d in it")
+  command.add_option("-o,--output", output, "the picture to write; of several isovalues with {iso} or %03d in it")
       ->required()
       ->type_name("IMAGE.png");
   session.writes(outputs_of(output, iso));
   light.add_to(command, session);
   side.add_to(command,
-                       "show this side alone and look through the other (default: both, each in its own light where "
-                       "the light has it)");
+              "show this side alone and look through the other (default: both, each in its own light where "
+              "the light has it)");
   command.add_option("--size", size, "pixels (default 800x600)")->type_name("WxH");
   command
       .add_option("--view", view,
                   "from where, in degrees (default 30,20): azimuth 0 looks along +y, 90 along -x; elevation 90 "
                   "looks down")
       ->type_name("AZIMUTH,ELEVATION");
-  command.add_option("--eye", eye, "look from this place of the world, in the direction of --view")
-      ->type_name("X,Y,Z");
+  command.add_option("--eye", eye, "look from this place of the world, in the direction of --view")->type_name("X,Y,Z");
   add_framing_options(command, *this);
   command
       .add_option("--mode", mode,
@@ -80,6 +78,8 @@ void RenderOptions::add_to(CLI::App& command, Session& session) {
       ->check(finite_number())
       ->type_name("STOPS");
   outer.add_to(command, "the side that is outside: lower or higher values (default: what the light says)");
+  parts.add_to(command);
+  trace.add_scene_to(command, session, "what lights a cap, where the light does not tell all of its scene");
 }
 
 View RenderOptions::looking() const {
@@ -134,8 +134,9 @@ void RenderOptions::warn_of_no_effect(const Session& session) const {
   if (exposure && shown != "global" && shown != "both")
     session.warn(fmt::format("--exposure has no effect with --mode {}: it is of global light", shown));
   if (!eye.empty() && frame != "box") session.warn("--frame has no effect with --eye");
-  if (shown == "normal" && light.given() && !side.given())
-    session.warn("--light has no effect with --mode normal");
+  if (trace.scene_given() && !(parts.cap && (shown == "global" || shown == "both")))
+    session.warn("--scene has no effect without --cap and the light that it is seen in");
+  if (shown == "normal" && light.given() && !side.given()) session.warn("--light has no effect with --mode normal");
 }
 
 nlohmann::json RenderOptions::settings(float isovalue, OuterSide outside) const {
@@ -154,6 +155,8 @@ nlohmann::json RenderOptions::settings(float isovalue, OuterSide outside) const 
   if (frame != usual.frame) result["frame"] = frame;
   if (zoom != usual.zoom) result["zoom"] = zoom;
   if (background != usual.background) result["background"] = background;
+  if (parts.cap) result["cap"] = true;
+  if (parts.min_component > 0) result["min_component"] = parts.min_component;
   if (light.given()) result["light"] = light.path();
   if (side.given()) result["side"] = side.name();
   return result;

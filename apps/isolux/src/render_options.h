@@ -6,6 +6,8 @@
 #include <optional>
 #include <string>
 
+#include "bake_options.h"
+#include "cap_options.h"
 #include "isovalue_option.h"
 #include "light_options.h"
 #include "volume_options.h"
@@ -34,6 +36,8 @@ struct RenderOptions {
   int samples = 3;
   std::optional<double> exposure;
   OuterOption outer;
+  CapOptions parts;
+  TraceOptions trace;  ///< --scene alone
 
   void add_to(CLI::App& command, Session& session);
 
@@ -45,6 +49,8 @@ struct RenderOptions {
   [[nodiscard]] std::string shown_mode() const;
   /// Whether every picture can be written. \throw UsageError
   void require_pictures() const;
+  /// Whether surfaces are extracted, too.
+  [[nodiscard]] bool needs_meshes() const { return parts.min_component > 0 || (frame == "surface" && eye.empty()); }
   /// Words that change nothing.
   void warn_of_no_effect(const Session& session) const;
   /// What the report says of a picture.

@@ -25,8 +25,8 @@ std::vector<std::string> output_names(const std::string& output, const IsovalueO
   static const std::regex placeholder(R"(\{iso\}|%(0[1-9])?d)");
   std::smatch first;
   if (!std::regex_search(output, first, placeholder))
-    throw UsageError(fmt::format("--output = '{}': {} isovalues need a placeholder in it: {}", output, texts.size(),
-                                 kPlaceholders));
+    throw UsageError(
+        fmt::format("--output = '{}': {} isovalues need a placeholder in it: {}", output, texts.size(), kPlaceholders));
   if (const std::string rest = first.suffix(); std::regex_search(rest, placeholder))
     throw UsageError(fmt::format("--output = '{}': allowed is one placeholder: {}", output, kPlaceholders));
   std::vector<std::string> names;
@@ -35,9 +35,10 @@ std::vector<std::string> output_names(const std::string& output, const IsovalueO
     names.push_back(filled(first, i, texts[i]));
     const auto [before, is_new] = taken.try_emplace(names.back(), i);
     if (!is_new)
-      throw UsageError(fmt::format("--output = '{}': {} would be written for isovalues number {} and {}; %03d keeps "
-                                   "them apart",
-                                   output, names.back(), before->second, i));
+      throw UsageError(
+          fmt::format("--output = '{}': {} would be written for isovalues number {} and {}; %03d keeps "
+                      "them apart",
+                      output, names.back(), before->second, i));
   }
   return names;
 }
@@ -66,7 +67,8 @@ void for_each_surface(const std::vector<std::string>& outputs, Session& session,
   for (const char* counted : {"triangles", "vertices", "rays"}) {
     for (const auto& surface : surfaces)
       if (surface.contains(counted))
-        session.report[counted] = session.report.value(counted, std::uint64_t(0)) + surface[counted].get<std::uint64_t>();
+        session.report[counted] =
+            session.report.value(counted, std::uint64_t(0)) + surface[counted].get<std::uint64_t>();
   }
   session.report["surfaces"] = std::move(surfaces);
 }

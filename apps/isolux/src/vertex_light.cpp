@@ -80,11 +80,7 @@ std::vector<Vec3f> VertexLighter::baked_light(const std::vector<Vec3f>& position
 const Scene& VertexLighter::scene_of_cap() {
   if (options_.exact_light) return scene_;
   if (scene_of_cap_) return *scene_of_cap_;
-  if (options_.trace.scene_given()) return scene_of_cap_.emplace(options_.trace.scene());
-  if (auto scene = light_scene(*baked_)) return scene_of_cap_.emplace(*std::move(scene));
-  session_.warn(
-      "--cap: the light does not tell its whole scene, so the cap is lit by a white sky; give it with --scene");
-  return scene_of_cap_.emplace();
+  return scene_of_cap_.emplace(isolux::scene_of_cap(*baked_, options_.trace, session_));
 }
 
 PointLight VertexLighter::cap_light(const std::vector<std::uint32_t>& vertices, const std::vector<Vec3f>& positions,
@@ -102,7 +98,7 @@ PointLight VertexLighter::cap_light(const std::vector<std::uint32_t>& vertices, 
 VertexLight VertexLighter::light(const IsoMesh& mesh, float isovalue) {
   VertexLight result;
   result.e.assign(mesh.n_vertices(), Vec3f(0.0f));
-  const SurfaceAndCap parts = parts_of(mesh, volume_.lattice(), options_.cap);
+  const SurfaceAndCap parts = parts_of(mesh, volume_.lattice(), options_.parts.cap);
   const std::vector<Vec3f>& positions = parts.surface.positions;
   std::uint64_t rays = 0;
   if (options_.exact_light) {

@@ -6,6 +6,7 @@
 #include <array>
 #include <cstddef>
 #include <glm/common.hpp>
+#include <glm/geometric.hpp>
 #include <map>
 #include <utility>
 #include <vector>
@@ -96,6 +97,64 @@ PointLight light_on_box(const Lattice& volume, const Scene& scene, std::span<con
   add(light.counters, near.counters);
   for (std::size_t i = 0; i < positions.size(); ++i) light.radiance[i] += radiance_of(near.samples, i);
   return light;
+}
+
+namespace {
+
+constexpr int kMostPoints = 257;  // of a face along an axis
+
+}  // namespace
+
+BoxLight::BoxLight(const Lattice& volume, const Scene& scene, const TraceSettings& settings,
+                   const BackendChoice& tracer, const Stages& stages, const Run& run)
+    : last_(volume.size - 1) {
+  const bool is_even = std::all_of(scene.lights.begin(), scene.lights.end(), is_far);
+  std::vector<Vec3f> positions;
+  std::vector<Vec3f> normals;
+  for (int face = 0; face < 6; ++face) {
+    const int axis = face / 2;
+    const int u = (axis + 1) % 3;
+    const int v = (axis + 2) % 3;
+    auto& points = faces_[std::size_t(face)].points;
+    points = {is_even ? 1 : std::min(volume.size[u], kMostPoints), is_even ? 1 : std::min(volume.size[v], kMostPoints)};
+    const Vec3 upwards = glm::normalize(volume.frame.gradient_to_world()[axis]);
+    const Vec3f normal(face % 2 == 0 ? -upwards : upwards);
+    Vec3 index(0.0);
+    index[axis] = face % 2 == 0 ? 0.0 : last_[axis];
+    for (int j = 0; j < points[1]; ++j)
+      for (int i = 0; i < points[0]; ++i) {
+        index[u] = double(last_[u]) * i / std::max(1, points[0] - 1);
+        index[v] = double(last_[v]) * j / std::max(1, points[1] - 1);
+        positions.emplace_back(volume.frame.world(index));
+        normals.push_back(normal);
+      }
+  }
+  const PointLight light = light_on_box(volume, scene, positions, normals, settings, tracer, stages, run);
+  counters_ = light.counters;
+  auto next = light.radiance.begin();
+  for (Face& face : faces_) {
+    const auto end = next + std::ptrdiff_t(face.points[0]) * face.points[1];
+    face.radiance.assign(next, end);
+    next = end;
+  }
+}
+
+Vec3f BoxLight::at(int face, const Vec3& index) const {
+  const std::array<int, 2>& points = faces_[std::size_t(face)].points;
+  const std::vector<Vec3f>& radiance = faces_[std::size_t(face)].radiance;
+  std::array<std::size_t, 2> low{};
+  std::array<std::size_t, 2> high{};
+  std::array<float, 2> part{};
+  for (std::size_t a = 0; a < 2; ++a) {
+    const int axis = (face / 2 + 1 + int(a)) % 3;
+    const double place = std::clamp(index[axis] / last_[axis], 0.0, 1.0) * (points[a] - 1);
+    low[a] = std::size_t(place);
+    high[a] = std::min(low[a] + 1, std::size_t(points[a] - 1));
+    part[a] = float(place - double(low[a]));
+  }
+  const auto of = [&](std::size_t i, std::size_t j) { return radiance[j * std::size_t(points[0]) + i]; };
+  return glm::mix(glm::mix(of(low[0], low[1]), of(high[0], low[1]), part[0]),
+                  glm::mix(of(low[0], high[1]), of(high[0], high[1]), part[0]), part[1]);
 }
 
 }  // namespace isolux

@@ -95,5 +95,48 @@ TEST(LightOnBoxOf, NothingIsNothing) {
   EXPECT_THROW((void)light_on_box(box, {}, one, {}, {}, {}, builtin_stages(), isolux::Run{}), InvalidInput);
 }
 
+/// A sky, and a lamp above the face z = 1 of an oblique box.
+Scene lamp_scene() {
+  Scene scene;
+  scene.environment = SkyEnvironment{.up = {1.0f, 0.0f, 0.0f}};
+  scene.lights.push_back(SphereLight{.center = {0.5, 0.5, 2.0}, .radius = 0.25f, .radiance = Vec3f(4.0f)});
+  return scene;
+}
+
+TEST(BoxLight, IsLightOnBoxAtGridPointsAndLinearBetween) {
+  const Volume volume = ramp(0.4);
+  const Lattice& lattice = volume.lattice();
+  const TraceSettings settings{.rays = 1024};
+  const BoxLight light(lattice, lamp_scene(), settings, {}, builtin_stages(), isolux::Run{});
+  EXPECT_GT(light.counters().rays, 0U);
+  for (int face = 0; face < 6; ++face) {
+    const int axis = face / 2;
+    const Vec3 upwards = glm::normalize(lattice.frame.gradient_to_world()[axis]);
+    Vec3 at(2.0, 3.0, 5.0);
+    at[axis] = face % 2 == 0 ? 0.0 : kSide - 1;
+    Vec3 next = at;
+    next[(axis + 2) % 3] += 1.0;
+    const std::vector<Vec3f> positions = {Vec3f(lattice.frame.world(at)), Vec3f(lattice.frame.world(next))};
+    const std::vector<Vec3f> normals(2, Vec3f(face % 2 == 0 ? -upwards : upwards));
+    const PointLight known =
+        light_on_box(lattice, lamp_scene(), positions, normals, settings, {}, builtin_stages(), isolux::Run{});
+    EXPECT_NEAR(light.at(face, at).x, known.radiance[0].x, 0.01) << face;  // each of 1024 rays aimed at the ball
+    EXPECT_NEAR(light.at(face, next).x, known.radiance[1].x, 0.01) << face;
+    EXPECT_NEAR(light.at(face, 0.75 * at + 0.25 * next).x,
+                0.75f * light.at(face, at).x + 0.25f * light.at(face, next).x, 1e-5)
+        << face;
+  }
+}
+
+TEST(BoxLight, IsOneAFaceWithoutLamps) {
+  const Volume volume = ramp();
+  Scene scene = lamp_scene();
+  scene.lights.clear();
+  const BoxLight light(volume.lattice(), scene, {}, {}, builtin_stages(), isolux::Run{});
+  EXPECT_EQ(light.at(4, {1.0, 2.0, 0.0}), light.at(4, {7.5, 0.0, 0.0}));
+  EXPECT_NEAR(light.at(1, {8.0, 2.0, 3.0}).x, 1.0, 2e-3);  // under the half sky e = (1 + n.up)/2, of 16384 rays
+  EXPECT_NEAR(light.at(4, {1.0, 2.0, 0.0}).x, 0.5, 2e-3);
+}
+
 }  // namespace
 }  // namespace isolux::test

@@ -4,7 +4,7 @@
 
 namespace isolux::mc {
 
-void drop_small_components(IndexedMesh& mesh, std::size_t triangles) {
+std::vector<bool> small_components(const IndexedMesh& mesh, std::size_t triangles) {
   VertexSets sets(mesh.positions.size());
   for (const Triangle& t : mesh.triangles) {
     sets.join(t[0], t[1]);
@@ -12,11 +12,18 @@ void drop_small_components(IndexedMesh& mesh, std::size_t triangles) {
   }
   std::vector<std::size_t> size(mesh.positions.size(), 0);
   for (const Triangle& t : mesh.triangles) ++size[sets.find(t[0])];
+  std::vector<bool> small(mesh.positions.size());
+  for (std::uint32_t v = 0; v < small.size(); ++v) small[v] = size[sets.find(v)] < triangles;
+  return small;
+}
+
+void drop_small_components(IndexedMesh& mesh, std::size_t triangles) {
+  const std::vector<bool> small = small_components(mesh, triangles);
   constexpr std::uint32_t kGone = std::numeric_limits<std::uint32_t>::max();
   std::vector<std::uint32_t> renumbered(mesh.positions.size(), kGone);
   std::uint32_t kept = 0;
   for (std::uint32_t v = 0; v < renumbered.size(); ++v) {
-    if (size[sets.find(v)] < triangles) continue;
+    if (small[v]) continue;
     mesh.positions[kept] = mesh.positions[v];
     mesh.normals[kept] = mesh.normals[v];
     renumbered[v] = kept++;

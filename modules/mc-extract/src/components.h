@@ -2,6 +2,7 @@
 
 #include <isolux/mc_extract/indexed_mesh.h>
 
+#include <cstddef>
 #include <cstdint>
 #include <numeric>
 #include <vector>
@@ -29,6 +30,9 @@ class VertexSets {
  private:
   std::vector<std::uint32_t> parent_;
 };
+
+/// For each vertex whether its connected component has fewer than `triangles` triangles.
+[[nodiscard]] std::vector<bool> small_components(const IndexedMesh& mesh, std::size_t triangles);
 
 /// Leaves out the connected components of fewer than `triangles` triangles; the order of what stays is kept.
 void drop_small_components(IndexedMesh& mesh, std::size_t triangles);

@@ -9,6 +9,7 @@
 #include <isolux/mc_extract/iso_extractor.h>
 #include <isolux/mc_extract/iso_mesh.h>
 #include <isolux/mc_extract/large_vector.h>
+#include <isolux/mc_extract/left_out_components.h>
 #include <isolux/mc_extract/measure_mesh.h>
 #include <isolux/mc_extract/vertex_resolution.h>
 #include <isolux/mc_extract/write_mesh.h>

@@ -20,6 +20,9 @@ struct SurfacePoint {
   Vec3 normal{0.0};       ///< world, unit, towards the outer side; (0,0,0) where there is none
   Vec3 towards_eye{0.0};  ///< world, unit
   bool outside = true;    ///< the camera sees the outer side
+  /// Of a cap, the face of the volume's box that it is on: 2 axis, + 1 where the index is highest. `normal` is that
+  /// face's.
+  std::optional<int> cap{};
 };
 
 /// Radiance that a surface point sends to the camera.
@@ -34,6 +37,12 @@ struct RenderSettings {
   GradientKind gradient = GradientKind::kCentralDifferences;
   std::optional<Vec3f> background{Vec3f(0.2f)};  ///< linear radiance; nothing: transparent (Image::coverage)
   std::optional<LevelSetSide> only{};            ///< shown alone; the camera looks through the other side
+  /// Whether the surface is closed where it meets the box, as CapKind::kBox closes meshes: by the inner side's part of
+  /// the box's faces; by the outer side's where the inner side alone is shown.
+  bool cap = false;
+  /// Whether a place (index space) of the surface or its cap is left out: the camera looks through it. Called from many
+  /// threads. Nothing: all is shown.
+  std::function<bool(const Vec3& index)> left_out{};
 };
 
 /// Draws level sets of one volume. What it needs to know of the volume beforehand it finds out once, in a pass that
@@ -64,7 +73,7 @@ using LightAt = std::function<Vec3f(const SurfacePoint&)>;
 /// The baked light on a diffuse surface: albedo times e and what it emits. The inner side, which has no light of its
 /// own, is drawn in a dim local shade.
 [[nodiscard]] Shader global_shader(LightAt light, const SurfaceColour& colour);
-/// The same with light of both sides, each where the camera sees it.
+/// The same with light of both sides, each where the camera sees it; a cap has no light on its inner side.
 [[nodiscard]] Shader global_shader(LightAt outer, LightAt inner, const SurfaceColour& colour);
 
 /// What graphics hardware shows without global light: a headlight and a hemisphere of sky, no shadows.

@@ -1,0 +1,32 @@
+#include "cap_options.h"
+
+#include <isolux/bake/light_metadata.h>
+
+#include "usage.h"
+
+namespace isolux {
+
+void CapOptions::add_to(CLI::App& command) {
+  command.add_flag("--cap", cap,
+                   "close the surface where it meets the box; in light, the cap has that of the box's faces");
+  command.add_option("--min-component", min_component, "leave out connected parts of fewer triangles")
+      ->transform(whole_number(0, std::uint64_t(1) << 32))
+      ->type_name("N");
+}
+
+ExtractSettings CapOptions::settings(float isovalue, OuterSide outer) const {
+  return {.isovalue = isovalue,
+          .outer = outer,
+          .cap = cap ? CapKind::kBox : CapKind::kNone,
+          .min_component = min_component};
+}
+
+Scene scene_of_cap(const LightFile& baked, const TraceOptions& given, const Session& session) {
+  if (given.scene_given()) return given.scene();
+  if (const auto scene = light_scene(baked)) return *scene;
+  session.warn(
+      "--cap: the light does not tell its whole scene, so the cap is lit by a white sky; give it with --scene");
+  return {};
+}
+
+}  // namespace isolux

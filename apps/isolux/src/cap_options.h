@@ -1,0 +1,29 @@
+#pragma once
+
+#include <isolux/mc_extract/extractor.h>
+#include <isolux/raytrace_flat/scene.h>
+#include <isolux/volume_io/light_file.h>
+
+#include <CLI/App.hpp>
+#include <cstddef>
+
+#include "bake_options.h"
+#include "session.h"
+
+namespace isolux {
+
+/// --cap and --min-component: what of an isosurface `extract` writes and `render` shows.
+struct CapOptions {
+  bool cap = false;
+  std::size_t min_component = 0;
+
+  void add_to(CLI::App& command);
+  /// The same for an extractor.
+  [[nodiscard]] ExtractSettings settings(float isovalue, OuterSide outer) const;
+};
+
+/// Whose light a cap beside baked light is in: the scene that is given, else the light's, else, with a warning, a white
+/// sky. \throw as TraceOptions::scene()
+[[nodiscard]] Scene scene_of_cap(const LightFile& baked, const TraceOptions& given, const Session& session);
+
+}  // namespace isolux
