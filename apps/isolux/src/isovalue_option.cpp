@@ -62,24 +62,32 @@ std::vector<ToldIsovalue> told_isovalues(const std::string& text) {
   return all;
 }
 
-}  // namespace
-
-void IsovalueOption::add_to(CLI::App& command) {
-  const auto are_isovalues = [](const std::string& text) {
+/// What `read` finds wrong with a text.
+TextCheck check_by(const auto& read) {
+  return [read](const std::string& text) {
     try {
-      static_cast<void>(told_isovalues(text));
+      static_cast<void>(read(text));
     } catch (const UsageError& error) {
       return std::string(error.what());
     }
     return std::string();
   };
+}
+
+}  // namespace
+
+void IsovalueOption::add_to(CLI::App& command) {
   command
       .add_option("--iso", text_,
                   "isovalue, or as many standard deviations above the mean of the volume's values, such as 2.5sigma; "
                   "several as A,B,C or FIRST:LAST:COUNT")
       ->required()
       ->type_name("H|Nsigma")
-      ->check(are_isovalues);
+      ->check(check_by(told_isovalues));
+}
+
+void IsovalueOption::add_one_to(CLI::App& command, const std::string& help) {
+  command.add_option("--iso", text_, help)->type_name("H|Nsigma")->check(check_by(told_isovalue));
 }
 
 std::vector<std::string> IsovalueOption::texts() const {

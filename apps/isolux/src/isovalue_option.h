@@ -14,6 +14,8 @@ class IsovalueOption {
  public:
   /// One or several, required.
   void add_to(CLI::App& command);
+  /// One, or none.
+  void add_one_to(CLI::App& command, const std::string& help);
   [[nodiscard]] bool given() const { return !text_.empty(); }
   /// Each as the command line tells it, in the fewest digits: "-0.3", "2.5sigma".
   [[nodiscard]] std::vector<std::string> texts() const;

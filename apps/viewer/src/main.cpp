@@ -21,6 +21,7 @@
 #include "app/app.h"
 #include "app/window.h"
 #include "bake_options.h"
+#include "isovalue_option.h"
 #include "light_options.h"
 #include "parse.h"
 #include "program.h"
@@ -50,7 +51,7 @@ struct Words {
   VolumeOptions volume;
   LightOptions light;
   std::string scene;
-  std::optional<double> isovalue;
+  IsovalueOption iso;
   std::string screenshot;
   int frames = 0;
   std::string size = "1200x800";
@@ -73,9 +74,9 @@ struct Words {
             "--scene", scene,
             "what lights a draft (key b) and, without --light, exact light (default: uniform white sky, albedo 0.8)")
         ->type_name("SCENE.json");
-    program.add_option("--iso", isovalue, "isovalue to start with (default: Otsu's threshold)")
-        ->check(finite_number())
-        ->type_name("H");
+    iso.add_one_to(program,
+                   "isovalue to start with, or as many standard deviations above the mean of the volume's values, such "
+                   "as 2.5sigma (default: Otsu's threshold)");
     program.add_option("--mode", mode, "global (default with --light), local, or both side by side")
         ->check(CLI::IsMember({"global", "local", "both"}));
     program.add_flag("--exact-light", exact_light, "trace the light at the vertices of the surface, as key x does");
@@ -98,10 +99,11 @@ struct Words {
   }
 
   /// Refuses a light of the other side than --outer alone, as render does. \throw IoError, InvalidInput
-  [[nodiscard]] viewer::KnownLight read_light(const Volume& shown, Session& session) const {
+  [[nodiscard]] viewer::KnownLight read_light(const Volume& shown, std::optional<float> isovalue,
+                                              Session& session) const {
     const auto file = std::make_shared<const LightFile>(light.read(shown, session));
     if (const auto side = outer_side()) static_cast<void>(light.of_side(*file, side_towards(*file, *side)));
-    if (isovalue && mode != "local" && !exact_light) warn_outside_light(*file, float(*isovalue), session);
+    if (isovalue && mode != "local" && !exact_light) warn_outside_light(*file, *isovalue, session);
     return viewer::known_light(file);
   }
 
@@ -110,7 +112,7 @@ struct Words {
     return outer == "higher" ? OuterSide::kHigher : OuterSide::kLower;
   }
 
-  /// \throw UsageError, IoError, InvalidInput
+  /// All but the isovalue, which may be told by the volume's values. \throw UsageError, IoError, InvalidInput
   [[nodiscard]] viewer::AppSettings settings(const Session& session) const {
     viewer::AppSettings result;
     std::tie(result.width, result.height) = parse_size2("--size", size);
@@ -120,7 +122,6 @@ struct Words {
     result.frames = frames == 0 && !screenshot.empty() ? 1 : frames;
     result.screenshot = screenshot;
     require_png(screenshot);
-    result.viewer.isovalue = isovalue;
     result.viewer.azimuth_deg = angles[0];
     result.viewer.elevation_deg = angles[1];
     result.viewer.exposure_stops = exposure;
@@ -143,21 +144,24 @@ struct Words {
 };
 
 /// The slider has no place for other isovalues.
-void warn_outside(std::optional<double> isovalue, const viewer::Document& document, const Session& session) {
+void warn_outside(std::optional<float> isovalue, const viewer::Document& document, const Session& session) {
   const ValueRange range = document.histogram.range;
-  if (!isovalue || (*isovalue >= double(range.low) && *isovalue <= double(range.high))) return;
+  if (!isovalue || (*isovalue >= range.low && *isovalue <= range.high)) return;
   session.warn(fmt::format("--iso {} lies outside the values of {} ({} to {}): the nearest of these is shown",
                            *isovalue, document.volume->name(), range.low, range.high));
 }
 
-void look(const Words& words, const viewer::AppSettings& settings, Session& session) {
+void look(const Words& words, viewer::AppSettings settings, Session& session) {
   const viewer::WindowSystem windows;
   const bool given = !words.volume.source().empty();
   StoredVolume volume =
       given ? words.volume.read_stored(session) : read_stored_volume("gen:marschner-lobb", {}, session.run);
+  std::optional<float> isovalue;
+  if (words.iso.given()) isovalue = words.iso.in(volume).front();
   viewer::Document document = viewer::make_document(std::move(volume));
-  if (words.light.given()) document.light = words.read_light(document.volume->floats(), session);
-  warn_outside(words.isovalue, document, session);
+  if (words.light.given()) document.light = words.read_light(document.volume->floats(), isovalue, session);
+  warn_outside(isovalue, document, session);
+  if (isovalue) settings.viewer.isovalue = double(*isovalue);
   session.timed("view", [&] { viewer::run_app(std::move(document), settings, session.stages); });
 }
 

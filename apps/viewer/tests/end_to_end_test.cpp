@@ -87,9 +87,9 @@ TEST_F(IsoluxView, SaysInOneLineThatThereIsNoDisplay) {
 }
 
 TEST_F(IsoluxView, RefusesAWrongCommandLineBeforeItLooksForADisplay) {
-  for (const char* arguments :
-       {"--no-such-option", "--size 10", "--size 100000x10", "--view 1", "--mode global", "--frames 0", "--iso nan",
-        "--exposure inf", "--backend none", "--set k", "--screenshot ''", "--screenshot a.jpg", "''"}) {
+  for (const char* arguments : {"--no-such-option", "--size 10", "--size 100000x10", "--view 1", "--mode global",
+                                "--frames 0", "--iso nan", "--iso 2sigmas", "--iso 1,2", "--exposure inf",
+                                "--backend none", "--set k", "--screenshot ''", "--screenshot a.jpg", "''"}) {
     EXPECT_EQ(run("env -u DISPLAY", arguments), 2) << arguments;
     EXPECT_EQ(said().rfind("isolux: error: view: ", 0), 0u) << said();
   }
@@ -223,6 +223,20 @@ TEST_F(IsoluxView, SaysThatItsIsovalueIsOutsideTheValues) {
   if (!has_xvfb()) GTEST_SKIP() << "xvfb-run or xauth is not installed";
   EXPECT_EQ(run_with_display("gen:sphere:8 --iso 5 --frames 1 --size 64x64"), 0);
   EXPECT_EQ(said().rfind("isolux: warning: --iso 5 lies outside the values of gen:sphere:8", 0), 0u) << said();
+}
+
+TEST_F(IsoluxView, TakesAnIsovalueInStandardDeviations) {
+  if (!has_xvfb()) GTEST_SKIP() << "xvfb-run or xauth is not installed";
+  const std::string volume = path("v_2x2x2_uint8.raw");
+  std::ofstream(volume) << "\2\4\4\4\5\5\7\11";  // mean 5, standard deviation 2
+  const auto shown = [&](const std::string& isovalue) {
+    EXPECT_EQ(run_with_display(volume + " --iso=" + isovalue + " --size 64x64 --screenshot " + path("shown.png")), 0);
+    return picture("shown.png").rgb;
+  };
+  EXPECT_EQ(shown("0.5sigma"), shown("6"));
+  EXPECT_NE(shown("0.5sigma"), shown("4.5"));
+  static_cast<void>(shown("3sigma"));
+  EXPECT_EQ(said().rfind("isolux: warning: --iso 11 lies outside", 0), 0u) << said();
 }
 
 TEST_F(IsoluxView, WritesAPictureOfTheSizeAskedOnASmallerScreen) {
