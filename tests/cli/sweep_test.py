@@ -54,6 +54,14 @@ class Sweeps(CommandLineTest):
         said = [(surface["output"], surface["settings"]["isovalue"]) for surface in self.report("all.json")["surfaces"]]
         self.assertEqual(said, [("m-1sigma.stl", 3), ("m0sigma.stl", 5), ("m1sigma.stl", 7), ("m4.5.stl", 4.5)])
 
+    def test_are_warned_of_in_one_line(self):
+        self.succeed("bake", SPHERE, "-o", "light.nrrd", "--rays", 1, "--iso-range=-0.4:-0.3", "--quiet")
+        for command, end in (("render", "png"), ("extract", "ply")):
+            said = self.succeed(command, SPHERE, "--iso=-0.35,-0.2,3,5,4", "-o", f"f%d.{end}", "--light", "light.nrrd", "--quiet").stderr
+            self.assertEqual(said.count("\n"), 2, said)
+            self.assertIn(f"3 isovalues, 3 to 5, lie outside the values of {SPHERE}", said)
+            self.assertIn("4 isovalues, -0.2 to 5, lie outside the range -0.4 to -0.3 that the light is of", said)
+
     def test_share_one_camera(self):
         """In a frame of the surfaces the largest of all reaches from side to side."""
         more = ("--view", "0,0", "--projection", "orthographic", "--frame", "surface", "--background", "0,0,0", "--mode", "normal")

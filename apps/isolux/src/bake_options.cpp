@@ -43,11 +43,4 @@ TraceSettings TraceOptions::settings() const {
   return settings;
 }
 
-void warn_outside_range(const VolumeView& volume, float isovalue, const Session& session) {
-  const ValueRange range = value_range(volume);
-  if (isovalue >= range.low && isovalue <= range.high) return;
-  session.warn(fmt::format("isovalue {} lies outside the values of {} ({} to {}): there is no surface", isovalue,
-                           volume.name(), range.low, range.high));
-}
-
 }  // namespace isolux

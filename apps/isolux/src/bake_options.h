@@ -36,9 +36,6 @@ class TraceOptions {
   std::string tracer_;
 };
 
-/// Says so if no voxel is on one side of the isovalue: the surface is empty.
-void warn_outside_range(const VolumeView& volume, float isovalue, const Session& session);
-
 /// \throw UsageError if the registry does not know the backend or its settings.
 template <class Stage>
 void require_choice(const Registry<Stage>& registry, const BackendChoice& choice) {

@@ -6,6 +6,7 @@
 
 #include <CLI/App.hpp>
 #include <cstddef>
+#include <span>
 
 #include "bake_options.h"
 #include "session.h"
@@ -21,6 +22,9 @@ struct CapOptions {
   /// The same for an extractor.
   [[nodiscard]] ExtractSettings settings(float isovalue, OuterSide outer) const;
 };
+
+/// Says so where no voxel is on one side of an isovalue: there is no surface, unless a cap closes the whole box.
+void warn_of_no_surface(const VolumeView& volume, std::span<const ExtractSettings> surfaces, const Session& session);
 
 /// Whose light a cap beside baked light is in: the scene that is given, else the light's, else, with a warning, a white
 /// sky. \throw as TraceOptions::scene()

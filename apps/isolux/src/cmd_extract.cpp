@@ -118,13 +118,6 @@ void warn_of_no_effect(const ExtractOptions& options, const std::optional<LightF
     session.warn("--light-values has no effect without light, or in other files than .ply");
 }
 
-void warn_of_light(const LightFile& light, float isovalue, const ExtractOptions& options, const Session& session) {
-  if (!options.exact_light) return warn_outside_light(light, isovalue, session);
-  if (light.grid.detail.covers(double(isovalue))) return;
-  session.warn(
-      fmt::format("isovalue {} lies outside the range that the light is of: it is no help to --exact-light", isovalue));
-}
-
 /// What the file says of where it comes from.
 MeshExtras notes_of(const VolumeView& volume, const VertexLight& light, float isovalue, const ExtractOptions& options) {
   MeshExtras extras;
@@ -168,21 +161,23 @@ void extract(const Subject& subject, const BackendChoice& choice, const ExtractO
   scene.sides = LitSides::kOuter;
   // What is called outside, whichever side is shown.
   const OuterSide outside = options.side.or_outer() == LevelSetSide::kInner ? opposite(outer) : outer;
+  std::vector<ExtractSettings> surfaces;
+  for (const float isovalue : isovalues) {
+    surfaces.push_back(options.parts.settings(isovalue, outer));
+    surfaces.back().normals = normal_kind(options.normals);
+  }
+  warn_of_no_surface(volume, surfaces, session);
   std::optional<VertexLighter> lighter;
   if (options.is_lit() && holds_colours(options.output))
     lighter.emplace(*subject.floats, scene, light, options, session);
+  if (lighter && light)
+    warn_outside_light(*light, isovalues, session,
+                       options.exact_light ? "it is no help to --exact-light" : "what is shown is not its light");
   MeshMaker maker = session.timed("extract", [&] { return MeshMaker(volume, choice, outputs.size(), session); });
   IsoMesh mesh;
   for_each_surface(outputs, session, [&](std::size_t number) {
     const float isovalue = isovalues[number];
-    session.timed("extract", [&] {
-      ExtractSettings settings = options.parts.settings(isovalue, outer);
-      settings.normals = normal_kind(options.normals);
-      maker.extract(settings, mesh);
-    });
-    // A cap closes the whole box where all of it is inside.
-    if (!options.parts.cap || mesh.n_faces() == 0) warn_outside_range(volume, isovalue, session);
-    if (lighter && light) warn_of_light(*light, isovalue, options, session);
+    session.timed("extract", [&] { maker.extract(surfaces[number], mesh); });
     const VertexLight shown = lighter ? lighter->light(mesh, isovalue) : VertexLight();
     write_lit_mesh(mesh, shown, volume, isovalue, outputs[number], options, session);
     report_mesh(mesh, outputs.size() > 1 ? outputs[number] + ": " : "", session);

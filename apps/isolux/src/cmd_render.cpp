@@ -45,13 +45,6 @@ Camera camera_of(const RenderOptions& options, const std::vector<ExtractSettings
   return camera;
 }
 
-/// Says so where there is no surface. A cap closes the whole box where all of it is inside.
-void warn_of_nothing(const Volume& volume, const ExtractSettings& mesh, const Session& session) {
-  const ValueRange range = value_range(volume);
-  const bool is_full = mesh.outer == OuterSide::kLower ? range.low >= mesh.isovalue : range.high <= mesh.isovalue;
-  if (mesh.cap == CapKind::kNone || !is_full) warn_outside_range(volume, mesh.isovalue, session);
-}
-
 /// The run of one picture of several, whose progress is told as that of all.
 Run run_of_picture(const Run& all, double number, double count) {
   Run run = all;
@@ -89,10 +82,8 @@ void draw(const Volume& volume, const std::optional<LightFile>& light, const Ren
   RenderSettings settings =
       picture_settings(options, options.outer.or_else(light ? light_outer(*light) : OuterSide::kLower));
   const std::vector<ExtractSettings> meshes = meshes_of(options, isovalues, settings.outer);
-  for (const ExtractSettings& mesh : meshes) {
-    warn_of_nothing(volume, mesh, session);
-    if (light && is_global) warn_outside_light(*light, mesh.isovalue, session);
-  }
+  warn_of_no_surface(volume, meshes, session);
+  if (light && is_global) warn_outside_light(*light, isovalues, session);
   std::optional<IsoExtractor> extractor;
   if (options.needs_meshes())
     session.timed("extract", [&] {

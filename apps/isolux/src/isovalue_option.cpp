@@ -113,4 +113,10 @@ std::vector<float> IsovalueOption::in(const VolumeView& volume) const {
   return isovalues;
 }
 
+std::string isovalues_lie(std::span<const float> isovalues) {
+  if (isovalues.size() == 1) return fmt::format("isovalue {} lies", isovalues.front());
+  const auto [least, most] = std::minmax_element(isovalues.begin(), isovalues.end());
+  return fmt::format("{} isovalues, {} to {}, lie", isovalues.size(), *least, *most);
+}
+
 }  // namespace isolux

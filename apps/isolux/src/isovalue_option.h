@@ -3,6 +3,7 @@
 #include <isolux/core/volume.h>
 
 #include <CLI/App.hpp>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -25,5 +26,8 @@ class IsovalueOption {
  private:
   std::string text_;
 };
+
+/// Of those that something is wrong with, at least one: "isovalue 5 lies", "3 isovalues, 5 to 7, lie".
+[[nodiscard]] std::string isovalues_lie(std::span<const float> isovalues);
 
 }  // namespace isolux

@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "isovalue_option.h"
+
 namespace isolux {
 
 void LightOptions::add_to(CLI::App& command, Session& session) {
@@ -20,12 +22,15 @@ void LightOptions::warn_of_no_effect(const Session& session) const {
   if (force_ && !given()) session.warn("--force has no effect without --light");
 }
 
-void warn_outside_light(const LightFile& light, float isovalue, const Session& session) {
+void warn_outside_light(const LightFile& light, std::span<const float> isovalues, const Session& session,
+                        const std::string& what) {
   const LightDetail& detail = light.grid.detail;
-  if (detail.covers(double(isovalue))) return;
-  session.warn(
-      fmt::format("isovalue {} lies outside the range {} to {} that the light is of: what is shown is not its light",
-                  isovalue, detail.isovalues->low, detail.isovalues->high));
+  std::vector<float> outside;
+  for (const float isovalue : isovalues)
+    if (!detail.covers(double(isovalue))) outside.push_back(isovalue);
+  if (outside.empty()) return;
+  session.warn(fmt::format("{} outside the range {} to {} that the light is of: {}", isovalues_lie(outside),
+                           detail.isovalues->low, detail.isovalues->high, what));
 }
 
 void SideOption::add_to(CLI::App& command, const std::string& help) {

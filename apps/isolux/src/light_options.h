@@ -4,6 +4,7 @@
 
 #include <CLI/App.hpp>
 #include <optional>
+#include <span>
 #include <string>
 
 #include "session.h"
@@ -30,8 +31,9 @@ class LightOptions {
   bool force_ = false;
 };
 
-/// Where a light is of a range of isovalues, what lies outside is read from what lies next to it.
-void warn_outside_light(const LightFile& light, float isovalue, const Session& session);
+/// Where a light is of a range of isovalues, what lies outside is read from what lies next to it. `what` that means.
+void warn_outside_light(const LightFile& light, std::span<const float> isovalues, const Session& session,
+                        const std::string& what = "what is shown is not its light");
 
 /// --side outer|inner.
 class SideOption {

@@ -103,7 +103,7 @@ struct Words {
                                               Session& session) const {
     const auto file = std::make_shared<const LightFile>(light.read(shown, session));
     if (const auto side = outer_side()) static_cast<void>(light.of_side(*file, side_towards(*file, *side)));
-    if (isovalue && mode != "local" && !exact_light) warn_outside_light(*file, *isovalue, session);
+    if (isovalue && mode != "local" && !exact_light) warn_outside_light(*file, {&*isovalue, 1}, session);
     return viewer::known_light(file);
   }
 
