@@ -1,7 +1,6 @@
 """What the program says of itself, and what it is linked with."""
 import json
 import os
-import re
 import shutil
 import subprocess
 import unittest
@@ -16,13 +15,6 @@ class Program(CommandLineTest):
             self.assertIn(command, self.succeed("--help").stdout)
             self.assertIn("--", self.succeed(command, "--help").stdout)
             self.assertEqual(self.succeed(command, "--version").stdout, self.succeed("--version").stdout)
-
-    def test_documentation_names_every_option(self):
-        with open(os.path.join(os.path.dirname(os.path.abspath(__file__)), "../../docs/command-line.md")) as file:
-            page = file.read()
-        for command in ("info", "backends", "extract", "bake", "render", "probe", "convert"):
-            for option in re.findall(r"^ +(?:-\w,)?(--[a-z-]+)", self.succeed(command, "--help").stdout, re.MULTILINE):
-                self.assertRegex(page, option + r"\b", command)
 
     def test_the_window_is_found_in_a_folder_of_any_name(self):
         window = os.path.join(os.path.dirname(ISOLUX), "../viewer/isolux-view")
