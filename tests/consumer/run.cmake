@@ -5,6 +5,17 @@ file(REMOVE_RECURSE ${BUILD}/consumer)
 execute_process(COMMAND ${CMAKE_COMMAND} --install ${BUILD} --prefix ${BUILD}/consumer/prefix OUTPUT_QUIET COMMAND_ERROR_IS_FATAL ANY)
 file(MAKE_DIRECTORY ${BUILD}/consumer/moved)
 file(RENAME ${BUILD}/consumer/prefix ${prefix})
+
+# The licence asks to go with every copy, and so do those of the libraries in it.
+set(sources ${SOURCE}/../..)
+file(GLOB notes RELATIVE ${sources} ${sources}/third_party_notes/*)
+if(NOT notes)
+  message(FATAL_ERROR "no third_party_notes in ${sources}")
+endif()
+foreach(file IN LISTS notes ITEMS LICENSE)
+  execute_process(COMMAND ${CMAKE_COMMAND} -E compare_files ${sources}/${file} ${prefix}/share/doc/isolux/${file} COMMAND_ERROR_IS_FATAL ANY)
+endforeach()
+
 execute_process(COMMAND ${CMAKE_COMMAND} -S ${SOURCE} -B ${BUILD}/consumer/build -G ${GENERATOR} -D CMAKE_CXX_COMPILER=${CXX}
                 -D CMAKE_PREFIX_PATH=${prefix} -D CMAKE_BUILD_TYPE=Release
                 -D CMAKE_DISABLE_FIND_PACKAGE_CGAL=ON -D CMAKE_DISABLE_FIND_PACKAGE_nlohmann_json=ON OUTPUT_QUIET COMMAND_ERROR_IS_FATAL ANY)
