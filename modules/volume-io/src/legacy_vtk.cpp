@@ -126,14 +126,17 @@ std::vector<std::string> read_lattice(const std::string& path, VtkHeader& header
   return words;
 }
 
-// The attributes that may stand behind the values, as the file names them; see LegacyVtk.
-std::string attribute_at(const std::string& path, std::uint64_t offset) {
+std::vector<std::string> words_at(const std::string& path, std::uint64_t offset) {
+  std::string bytes(kLongestVtkHeader, '\0');
+  bytes.resize(file_source(path, offset)->read(std::as_writable_bytes(std::span(bytes))));
+  return plain_words(bytes);
+}
+
+// Of the words behind the values, the attribute that they begin with, as the file names it; see LegacyVtk.
+std::string attribute_of(const std::vector<std::string>& words) {
   static constexpr std::array<std::string_view, 9> kAttributes = {
       "scalars",  "color_scalars",       "vectors", "normals",  "tensors",
       "tensors6", "texture_coordinates", "field",   "cell_data"};
-  std::string bytes(kLongestVtkHeader, '\0');
-  bytes.resize(file_source(path, offset)->read(std::as_writable_bytes(std::span(bytes))));
-  auto words = plain_words(bytes);
   // What VTK notes of the values before, up to an empty line.
   const auto is_attribute = [](const std::string& word) {
     return std::find(kAttributes.begin(), kAttributes.end(), lower_case(word)) != kAttributes.end();
@@ -171,7 +174,11 @@ VtkValues read_text(const LegacyVtk& header, const ReadOptions& options, const R
     rounded |= double(values.back()) != value && !std::isnan(value);
     if (values.size() % 65536 == 0) throw_if_stopped(run);
   }
-  return {{std::move(values), rounded}, attribute_at(path, text.offset())};
+  const std::vector<std::string> behind = words_at(path, text.offset());
+  if (!behind.empty() && parse_real(behind.front()))
+    throw IoError(fmt::format("{}: {} numbers of data expected, more found: '{}'", path, count,
+                              excerpt(behind.front())));
+  return {{std::move(values), rounded}, attribute_of(behind)};
 }
 
 }  // namespace
@@ -213,7 +220,7 @@ VtkValues read_legacy_vtk_values(const LegacyVtk& header, const ReadOptions& opt
   const DataPlace& place = header.data;
   const std::uint64_t count = header.lattice.count();
   return {read_values(place, count, options, run),
-          attribute_at(place.file, place.offset + count * bytes_per_scalar(place.layout.type))};
+          attribute_of(words_at(place.file, place.offset + count * bytes_per_scalar(place.layout.type)))};
 }
 
 }  // namespace isolux::detail

@@ -30,7 +30,7 @@ struct VtkValues {
 [[nodiscard]] LegacyVtk read_legacy_vtk_header(const std::string& path);
 
 /// Further attributes may follow the values: the format says so. \throw IoError, InvalidInput, Cancelled; of text also
-/// for what is no number of its type
+/// for what is no number of its type, and for more numbers
 [[nodiscard]] VtkValues read_legacy_vtk_values(const LegacyVtk& header, const ReadOptions& options, const Run& run);
 
 }  // namespace isolux::detail

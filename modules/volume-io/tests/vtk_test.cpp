@@ -152,6 +152,14 @@ TEST_F(LegacyVtk, SaysWhatIsLeftOutBehindItsScalars) {
   }
 }
 
+TEST_F(LegacyVtk, IsRefusedWhereItsTextHasMoreNumbersThanItsSizes) {
+  const std::string data = test::vtk_header("ASCII") + "0 1 2 3 4 5 6 7 8 9 10 11";
+  for (const std::string more : {" 12", "\n12 13\n", "\n1e3", " -1\nVECTORS v float\n0 0 0\n"})
+    EXPECT_THAT(refused("a.vtk", data + more), HasSubstr("12 numbers of data expected, more found")) << more;
+  for (const std::string no_more : {"", " \n\n", "\nSCALARS t float 1\nLOOKUP_TABLE default\n12 13"})
+    expect_ramp(read_volume(folder_.write("a.vtk", data + no_more)));
+}
+
 TEST_F(LegacyVtk, IsRefusedWhereItsTextIsNoNumberOfItsType) {
   const auto with = [&](const std::string& type, const std::string& word) {
     std::string bytes = test::vtk_header("ASCII");
