@@ -80,6 +80,14 @@ class MissingValues(CommandLineTest):
         self.succeed("convert", "f_2x2x2_float32.raw", "o.nrrd", "--nodata", -9999.9, "--replace-nonfinite", 0)
         self.assertEqual(struct.unpack("<8f", nrrd_header(self.path("o.nrrd"))[2])[7], 0)
 
+    def test_that_no_voxel_has_are_remarked(self):
+        for value, lines in ((-9999, 0), (-999, 1)):
+            self.write("n_2x2x2_int16.raw", struct.pack("<8h", 1, 2, 3, 4, 5, 6, 7, -9999))
+            told = self.succeed("info", "n_2x2x2_int16.raw", "--nodata", value).stderr.splitlines()
+            self.assertEqual(len(told), lines)
+            for line in told:
+                self.assertRegex(line, "^isolux: warning: n_2x2x2_int16.raw: .* -999 ")
+
 
 class Names(CommandLineTest):
     def test_of_other_formats_are_no_lights(self):

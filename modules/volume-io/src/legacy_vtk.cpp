@@ -158,7 +158,7 @@ VtkValues read_text(const LegacyVtk& header, const ReadOptions& options, const R
   const std::uint64_t count = header.lattice.count();
   const std::string& path = header.data.file;
   NumberText text(path, header.data.offset, " \n\r\t\f\v");
-  const AsWanted as_wanted(options, header.data.layout.type == ScalarType::kFloat32);
+  AsWanted as_wanted(options, header.data.layout.type == ScalarType::kFloat32);
   std::vector<float> values;
   values.reserve(count);
   bool rounded = false;
@@ -176,9 +176,9 @@ VtkValues read_text(const LegacyVtk& header, const ReadOptions& options, const R
   }
   const std::vector<std::string> behind = words_at(path, text.offset());
   if (!behind.empty() && parse_real(behind.front()))
-    throw IoError(fmt::format("{}: {} numbers of data expected, more found: '{}'", path, count,
-                              excerpt(behind.front())));
-  return {{std::move(values), rounded}, attribute_of(behind)};
+    throw IoError(
+        fmt::format("{}: {} numbers of data expected, more found: '{}'", path, count, excerpt(behind.front())));
+  return {{std::move(values), rounded, as_wanted.found_nodata()}, attribute_of(behind)};
 }
 
 }  // namespace

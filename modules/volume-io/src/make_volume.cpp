@@ -42,6 +42,8 @@ StoredVolume make_volume(const std::string& name, Lattice lattice, DecodedValues
                       .space = std::move(space),
                       .rounded = values.rounded};
   std::visit([&](auto& list) { volume.values = Grid(lattice, std::move(list)); }, values.list);
+  if (options.nodata && !values.found_nodata)
+    volume.remarks.push_back(fmt::format("{}: no voxel has the value {} that stands for none", name, *options.nodata));
   return volume;
 }
 

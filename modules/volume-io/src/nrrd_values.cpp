@@ -62,7 +62,7 @@ DecodedValues read_text(const NrrdHeader& header, std::uint64_t offset, std::uin
   const std::uint64_t size = require_file(header.data_file);
   if (count > size) throw IoError(fmt::format("{}: {} numbers expected in {} bytes", header.data_file, count, size));
   NumberText text(header.data_file, offset + std::uint64_t(header.byte_skip), " \n\r\t,\f\v");
-  const AsWanted as_wanted(options, header.layout.type == ScalarType::kFloat32);
+  AsWanted as_wanted(options, header.layout.type == ScalarType::kFloat32);
   std::vector<float> values;
   values.reserve(count);
   bool rounded = false;
@@ -76,7 +76,7 @@ DecodedValues read_text(const NrrdHeader& header, std::uint64_t offset, std::uin
   }
   if (values.size() < count)
     throw IoError(fmt::format("{}: {} numbers expected, {} found", header.data_file, count, values.size()));
-  return {std::move(values), rounded};
+  return {std::move(values), rounded, as_wanted.found_nodata()};
 }
 
 }  // namespace

@@ -155,6 +155,7 @@ DecodedValues decode_scalars(ByteSource& source, const ScalarLayout& layout, std
 
 void append(DecodedValues& values, const DecodedValues& more) {
   values.rounded |= more.rounded;
+  values.found_nodata |= more.found_nodata;
   if (values.list.index() != more.list.index() && !std::holds_alternative<std::vector<float>>(values.list))
     values.list =
         std::visit([](const auto& list) { return std::vector<float>(list.begin(), list.end()); }, values.list);

@@ -35,7 +35,8 @@ using AnyValues = std::variant<std::vector<float>, std::vector<std::uint8_t>, st
 /// Values as they were read.
 struct DecodedValues {
   AnyValues list;
-  bool rounded = false;  ///< one of them is no float in the file
+  bool rounded = false;       ///< one of them is no float in the file
+  bool found_nodata = false;  ///< one of them was ReadOptions::nodata
 };
 
 /// Whether a number has a nearest float: infinities and NaN have one, finite numbers beyond the largest have not.
@@ -54,16 +55,20 @@ class AsWanted {
       : nodata_(options.nodata), subtract_(options.subtract), by_floats_(by_floats) {}
 
   /// NaN for ReadOptions::nodata, any other less ReadOptions::subtract.
-  [[nodiscard]] double operator()(double number) const {
-    if (nodata_ && (number == *nodata_ || (by_floats_ && float(number) == float(*nodata_))))
-      return std::numeric_limits<double>::quiet_NaN();
-    return number - subtract_;
+  [[nodiscard]] double operator()(double number) {
+    if (!nodata_ || (number != *nodata_ && !(by_floats_ && float(number) == float(*nodata_))))
+      return number - subtract_;
+    found_nodata_ = true;
+    return std::numeric_limits<double>::quiet_NaN();
   }
+  /// Whether one of the numbers so far was ReadOptions::nodata.
+  [[nodiscard]] bool found_nodata() const { return found_nodata_; }
 
  private:
   std::optional<double> nodata_;
   double subtract_;
   bool by_floats_;
+  bool found_nodata_ = false;
 };
 
 /// Reads `count` numbers, in ReadOptions::form and without ReadOptions::nodata and less ReadOptions::subtract. \throw

@@ -27,7 +27,7 @@ double number_of(const std::byte* bytes) {
 DecodedValues decode_scaled(ByteSource& source, const ScalarLayout& layout, std::uint64_t count, const Scaling& scaling,
                             const ReadOptions& options, const std::string& path, const Run& run) {
   const auto [slope, intercept] = scaling;
-  const AsWanted as_wanted(options, layout.type == ScalarType::kFloat32 || slope != 1.0 || intercept != 0.0);
+  AsWanted as_wanted(options, layout.type == ScalarType::kFloat32 || slope != 1.0 || intercept != 0.0);
   const std::size_t width = bytes_per_scalar(layout.type);
   const auto number = with_type(layout.type, [](auto zero) { return number_of<decltype(zero)>; });
   std::vector<float> values;
@@ -55,7 +55,7 @@ DecodedValues decode_scaled(ByteSource& source, const ScalarLayout& layout, std:
     }
     if (run.progress) run.progress("read", double(values.size()) / double(count));
   }
-  return {std::move(values), rounded};
+  return {std::move(values), rounded, as_wanted.found_nodata()};
 }
 
 }  // namespace isolux::detail

@@ -76,6 +76,27 @@ TEST_F(Rounding, OffsetsAreTakenOffEveryFormat) {
   }
 }
 
+// Of every format, by what its numbers go through.
+TEST_F(Rounding, ValuesForNoneThatNoVoxelHasAreRemarked) {
+  std::string text;
+  for (int i = 0; i < 12; ++i) text += fmt::format("{} ", i);
+  const std::string nrrd = "NRRD0004\ntype: short\ndimension: 3\nsizes: 3 2 2\nendian: little\nencoding: ";
+  for (const auto& path : {folder_.write("a.nii", test::nifti_sample()), folder_.write("a.mrc", test::mrc_sample()),
+                           folder_.write("a.vtk", test::vtk_header("ASCII") + text),
+                           folder_.write("b.vtk", test::vtk_header("BINARY") + bytes_of(test::ramp(), true)),
+                           folder_.write("a.nrrd", nrrd + "raw\n\n" + bytes_of(test::ramp())),
+                           folder_.write("c.nrrd", nrrd + "text\n\n" + text), std::string("gen:sphere:3")}) {
+    ReadOptions options;
+    EXPECT_TRUE(read_volume(path, options).remarks.empty()) << path;
+    options.nodata = double(test::values_of(read_volume(path))[5]);
+    EXPECT_TRUE(read_volume(path, options).remarks.empty()) << path;
+    options.nodata = -9999.5;
+    EXPECT_THAT(read_volume(path, options).remarks,
+                ElementsAre(path + ": no voxel has the value -9999.5 that stands for none"));
+    EXPECT_EQ(read_stored_volume(path, options).remarks.size(), 1u) << path;
+  }
+}
+
 TEST(Reading, SaysHowFilesOfNoFormatAreRead) {
   const test::TemporaryFolder folder;
   EXPECT_THAT(test::reading_error(folder.write("a.bin", "1234")), HasSubstr("--dims and --type read any other file"));

@@ -14,9 +14,9 @@ namespace {
 constexpr std::string_view kPrefix = "gen:";
 constexpr int kDefaultSize = 64;
 
-/// \throw InvalidInput for a value that does not fit a float
-void take_as_wanted(Volume& volume, const ReadOptions& options) {
-  const detail::AsWanted as_wanted(options, true);
+/// Whether one of the values was ReadOptions::nodata. \throw InvalidInput for a value that does not fit a float
+bool take_as_wanted(Volume& volume, const ReadOptions& options) {
+  detail::AsWanted as_wanted(options, true);
   for (float& value : volume.values.values()) {
     const double wanted = as_wanted(double(value));
     if (!detail::fits_float(wanted))
@@ -24,6 +24,7 @@ void take_as_wanted(Volume& volume, const ReadOptions& options) {
                                      volume.name, value, options.subtract));
     value = float(wanted);
   }
+  return as_wanted.found_nodata();
 }
 
 /// `gen:NAME[:N]`: built-in functions sampled on the unit cube. Immutable, callable from many threads.
@@ -50,10 +51,11 @@ class AnalyticReader final : public VolumeReader {
             fmt::format("{}: '{}' is no number of points an axis; allowed is 2 to 2048", source, digits));
     }
     Volume volume = sample_analytic_field(text.substr(0, colon), n, run);
-    if (options.subtract != 0.0 || options.nodata) take_as_wanted(volume, options);
-    if (!options.spacing) return keep_floats(std::move(volume));
+    const bool found_nodata = (options.subtract != 0.0 || options.nodata) && take_as_wanted(volume, options);
+    if (!options.spacing && !options.nodata) return keep_floats(std::move(volume));
     const auto values = volume.values.values();
-    return detail::make_volume(volume.name, volume.lattice(), {std::vector<float>(values.begin(), values.end())},
+    return detail::make_volume(volume.name, volume.lattice(),
+                               {std::vector<float>(values.begin(), values.end()), false, found_nodata},
                                volume.stored_type, volume.space, options);
   }
 

@@ -91,12 +91,12 @@ detail::DecodedValues read_halves(const detail::DataPlace& place, std::uint64_t 
   as_bits.form = VoxelForm::kStored;
   as_bits.subtract = 0.0;
   as_bits.nodata.reset();
-  const detail::AsWanted as_wanted(options, true);
+  detail::AsWanted as_wanted(options, true);
   const auto bits = std::get<std::vector<std::uint16_t>>(detail::read_values(place, count, as_bits, run).list);
   std::vector<float> values;
   values.reserve(count);
   for (const std::uint16_t half : bits) values.push_back(float(as_wanted(double(float_of_half(half)))));
-  return {std::move(values), options.subtract != 0.0};
+  return {std::move(values), options.subtract != 0.0, as_wanted.found_nodata()};
 }
 
 // Stacks lie in a file as one volume does (Cheng et al., section 3.2): NZ is of all, MZ of one.

@@ -33,6 +33,7 @@ struct ReadOptions {
   std::optional<Vec3> spacing;   ///< replaces the file's spacing, world units; needed where a format has none
   double subtract = 0.0;  ///< taken off each value before it becomes a float; what is left is float32 in any file
   /// Numbers of the file, scaled where it says so, that stand for none: they become NaN, and all others floats.
+  /// Where there is none, Volume::remarks says so.
   std::optional<double> nodata{};
   bool allow_external_data = false;                         ///< a header may name a data file outside its own folder
   VoxelForm form = VoxelForm::kFloats;                      ///< set by read_volume and read_stored_volume
