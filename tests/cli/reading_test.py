@@ -113,7 +113,7 @@ class Reports(CommandLineTest):
 class Tables(CommandLineTest):
     def probe(self, table):
         self.write("in.csv", table)
-        self.succeed("probe", "gen:sphere:8", "--light", "l.nrrd", "--points", "in.csv", "-o", "out.csv")
+        self.told = self.succeed("probe", "gen:sphere:8", "--light", "l.nrrd", "--points", "in.csv", "-o", "out.csv").stderr
         return self.read("out.csv").decode().splitlines()
 
     def setUp(self):
@@ -127,6 +127,17 @@ class Tables(CommandLineTest):
         self.assertTrue(lines[2].endswith(",CB,"), lines[2])
         self.assertEqual(self.probe("x;y;z;no,te\n.5;.25;.5;a\n")[0], 'x,y,z,isovalue,e,"no,te"')
         self.assertEqual(self.probe("a b c\n.5 .25 .5\n")[0], "x,y,z,isovalue,e")
+
+    def test_have_each_name_once(self):
+        lines = self.probe("x,y,z,isovalue,e,note,e_in\n.5,.25,.5,7,8,a,9\n")
+        self.assertEqual(lines[0], "x,y,z,isovalue,e,isovalue_in,e_in_in,note,e_in")
+        self.assertTrue(lines[1].endswith(",7,8,a,9"), lines[1])
+        self.assertIn("'isovalue' is 'isovalue_in'", self.told)
+        self.assertIn("'e' is 'e_in_in'", self.told)
+        self.assertEqual(self.probe("X,y,z,x,e_r\n.5,.25,.5,3,4\n")[0], "x,y,z,isovalue,e,x_in,e_r")
+        again = self.probe("\n".join(self.probe("x,y,z\n.5,.25,.5\n")) + "\n")
+        self.assertEqual(again[0], "x,y,z,isovalue,e,isovalue_in,e_in")
+        self.assertEqual(again[1].split(",")[3:5], again[1].split(",")[5:])
 
     def test_quote_what_parts_fields(self):
         lines = self.probe('label,x,y,z,"n,m"\n"a,.1,.2,.3,b",.5,.25,.5,"c;d"\n')

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 #include <fmt/ostream.h>
+#include <fmt/ranges.h>
 #include <isolux/core/field.h>
 #include <isolux/mc_extract/vertex_resolution.h>
 #include <isolux/resample/light_reader.h>
@@ -83,12 +84,33 @@ std::string next_fields(const std::vector<std::string>& texts) {
   return fields;
 }
 
+bool is_among(const std::vector<std::string>& names, const std::string& name) {
+  return std::find(names.begin(), names.end(), name) != names.end();
+}
+
+/// The names of a table's other columns, those changed that probe has for its own.
+std::vector<std::string> told_apart(std::vector<std::string> names, const std::vector<std::string>& own,
+                                    const ProbeOptions& options, const Session& session) {
+  for (std::string& name : names) {
+    if (!is_among(own, name)) continue;
+    std::string other = name;
+    do other += "_in";
+    while (is_among(own, other) || is_among(names, other));
+    session.say(fmt::format("{}: its column '{}' is '{}' in {}", options.points, name, other, options.output));
+    name = other;
+  }
+  return names;
+}
+
 void run_probe(const ProbeOptions& options, Session& session) {
   if (!options.light.given()) throw UsageError("--light is required: the light to read at the points");
   const Volume volume = options.volume.read(session);
   const LightFile light = options.light.read(volume, session);
   const PointTable table = session.timed("read", [&] { return read_point_table(options.points); });
   const std::vector<Vec3>& points = table.points;
+  std::vector<std::string> own{"x", "y", "z", "isovalue", "e"};
+  if (light.grid.channels == 3) own = {"x", "y", "z", "isovalue", "e_r", "e_g", "e_b"};
+  const std::vector<std::string> names = told_apart(table.names, own, options, session);
   const Box box(volume.lattice());
   const TrilinearField field(volume);
   const LightReader reader(volume, options.light.of_side(light, options.side.or_outer()), TexelStorage::kBricks,
@@ -100,8 +122,7 @@ void run_probe(const ProbeOptions& options, Session& session) {
   std::size_t unlit = 0;
   session.timed("write", [&] {
     write_atomically(options.output, [&](std::ostream& out) {
-      out << (light.grid.channels == 3 ? "x,y,z,isovalue,e_r,e_g,e_b" : "x,y,z,isovalue,e") << next_fields(table.names)
-          << '\n';
+      out << fmt::format("{}", fmt::join(own, ",")) << next_fields(names) << '\n';
       for (std::size_t i = 0; i < points.size(); ++i) {
         const Vec3& p = points[i];
         const auto index = box.inside(p);
