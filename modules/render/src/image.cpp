@@ -6,6 +6,7 @@
 #include <cerrno>
 #include <cmath>
 #include <fstream>
+#include <limits>
 #include <new>
 
 #include <stb/stb_image_write.h>
@@ -23,6 +24,22 @@ float linear_value(std::uint8_t code) {
   const float v = float(code) / 255.0f;
   return v <= 0.04045f ? v / 12.92f : std::pow((v + 0.055f) / 1.055f, 2.4f);
 }
+
+namespace {
+
+/// \throw InvalidInput
+std::size_t pixel_count(int width, int height) {
+  constexpr std::size_t kMost = std::size_t(1) << 48;  // as of a lattice: what addresses reach
+  const std::size_t count = width >= 0 && height >= 0 ? std::size_t(width) * std::size_t(height) : kMost + 1;
+  if (count <= kMost) return count;
+  throw InvalidInput(
+      fmt::format("a picture of {}x{} pixels: allowed are sizes of 0 and more, and 2^48 pixels", width, height));
+}
+
+}  // namespace
+
+Image::Image(int columns, int rows, const Vec3f& colour)
+    : width(columns), height(rows), pixels(pixel_count(columns, rows), colour) {}
 
 void require_png_size(int width, int height, int channels) {
   // Where stb counts bytes in an int that it doubles.
@@ -91,7 +108,11 @@ void put(const Image& from, int at, Image& into) {
 
 Image side_by_side(const Image& left, const Image& right, int gap, const Vec3f& colour) {
   if (gap < 0) throw InvalidInput(fmt::format("a gap of {} pixels: allowed is 0 and more", gap));
-  Image both(left.width + gap + right.width, std::max(left.height, right.height), colour);
+  const std::int64_t width = std::int64_t(left.width) + gap + right.width;
+  if (width > std::numeric_limits<int>::max())
+    throw InvalidInput(fmt::format("pictures of {} and {} pixels with {} between: allowed are 2^31 - 1 in all",
+                                   left.width, right.width, gap));
+  Image both(int(width), std::max(left.height, right.height), colour);
   if (!left.coverage.empty() || !right.coverage.empty()) both.coverage.assign(both.pixels.size(), 0.0f);
   put(left, 0, both);
   put(right, left.width + gap, both);

@@ -28,6 +28,14 @@ TEST(WritePng, RefusesCoverageOfOtherPixels) {
   EXPECT_NO_THROW(require_png_size(17000, 17000));
 }
 
+TEST(Images, OfNoSizeAreRefused) {
+  EXPECT_THROW(Image(-1, 5), InvalidInput);
+  EXPECT_THROW(Image(5, -1), InvalidInput);
+  EXPECT_THROW(Image(2147483647, 2147483647), InvalidInput) << "more than addresses reach";
+  EXPECT_TRUE(Image(0, 5).pixels.empty());
+  EXPECT_THROW((void)side_by_side(Image(2, 1), Image(1, 2), 2147483647, Vec3f(1.0f)), InvalidInput);
+}
+
 TEST(Images, StandSideBySideWithTheirCoverage) {
   Image clear(2, 1, Vec3f(0.5f));
   clear.coverage = {0.0f, 1.0f};

@@ -17,8 +17,8 @@ struct Image {
   std::vector<float> coverage{};  ///< how much of each pixel is covered by its colour, 0 to 1; empty: all of all
 
   Image() = default;
-  Image(int columns, int rows, const Vec3f& colour = Vec3f(0.0f))
-      : width(columns), height(rows), pixels(std::size_t(columns) * std::size_t(rows), colour) {}
+  /// \throw InvalidInput for sizes below 0 and more than 2^48 pixels
+  Image(int columns, int rows, const Vec3f& colour = Vec3f(0.0f));
   [[nodiscard]] std::size_t offset(int x, int y) const { return std::size_t(y) * std::size_t(width) + std::size_t(x); }
   [[nodiscard]] Vec3f& at(int x, int y) { return pixels[offset(x, y)]; }
   [[nodiscard]] const Vec3f& at(int x, int y) const { return pixels[offset(x, y)]; }
@@ -40,7 +40,8 @@ void require_png_size(int width, int height, int channels = 3);
 void write_png(const Image& image, const std::string& path);
 
 /// Two pictures side by side, tops aligned, with a gap of `gap` pixels in `colour`, which also fills up the lower one;
-/// transparent instead if either has coverage. \throw InvalidInput for a negative gap
+/// transparent instead if either has coverage. \throw InvalidInput for a negative gap, or a
+/// picture wider than int holds
 [[nodiscard]] Image side_by_side(const Image& left, const Image& right, int gap, const Vec3f& colour);
 
 }  // namespace isolux
