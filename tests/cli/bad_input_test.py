@@ -7,6 +7,16 @@ import unittest
 from support import CommandLineTest
 
 
+class HeaderlessFiles(CommandLineTest):
+    def test_need_to_be_told_their_size_and_type(self):
+        self.write("x.raw", bytes(64))
+        for command in (("info", "x.raw"), ("bake", "x.raw", "-o", "l.nrrd"), ("convert", "x.raw", "v.nrrd"),
+                        ("extract", "x.raw", "--iso", 1, "-o", "m.ply")):
+            self.fail(2, *command, says=("x.raw", "--dims", "--type"))
+        self.fail(1, "info", "none.raw", says="none.raw: no such file")
+        self.succeed("info", "x.raw", "--dims", "4x4x4", "--type", "uint8")
+
+
 class BadCommandLine(CommandLineTest):
     def test_is_status_2_and_named(self):
         cases = [
@@ -44,6 +54,8 @@ class BadCommandLine(CommandLineTest):
             (("bake", "x.raw", "-o", "l.nrrd", "--dims", "4x4x4"), "--type"),
             (("bake", "x.raw", "-o", "l.nrrd", "--dims", "4x4x4", "--type", "uint7"), "uint7"),
             (("bake", "x.raw", "-o", "l.nrrd", "--spacing", "1,2"), "--spacing"),
+            (("convert", "gen:sphere:8", "x.raw"), "x_8x8x8_float32.raw"),
+            (("convert", "gen:sphere:8", "x_8x8x9_uint8.raw"), ": x_8x8x8_uint8.raw"),
             (("extract", "gen:sphere:8", "-o", "m.ply"), "--iso"),
             (("extract", "gen:sphere:8", "-o", "m.ply", "--iso", "high"), "high"),
             (("extract", "gen:sphere:8", "-o", "m.ply", "--iso", "nan"), "nan"),

@@ -52,6 +52,15 @@ std::vector<std::string> files_to_write(const std::string& output, const WriteOp
   }
 }
 
+/// \throw UsageError for a headerless file whose name does not say the volume's size
+void require_own_name(const StoredVolume& volume, const std::string& output) {
+  try {
+    require_name_of(volume, output);
+  } catch (const InvalidInput& error) {
+    throw UsageError(fmt::format("OUT: {}", error.what()));
+  }
+}
+
 /// Where OUT is a header that is replaced, its data files: they may have other names than the new ones.
 std::vector<std::string> data_before(const std::string& output, const Session& session) {
   std::error_code error;
@@ -96,6 +105,7 @@ void add_convert_command(CLI::App& program, Session& session) {
       StoredVolume volume = options->volume.read_as_is(session);
       warn_of_rounding(volume, session);
       choose_type(volume);
+      require_own_name(volume, options->output);
       const std::vector<std::string> before = data_before(options->output, session);
       session.timed("write", [&] { write_volume(volume, options->output, options->write); });
       say_what_is_left(before, files_written(options->output, options->write), session);

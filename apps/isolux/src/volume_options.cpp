@@ -96,8 +96,12 @@ StoredVolume VolumeOptions::read_in(VoxelForm form, Session& session) const {
   std::optional<float> replacement;
   if (!replacement_.empty()) replacement = float(parse_numbers("--replace-nonfinite", replacement_, 1)[0]);
   const auto read = [&] {
-    if (form == VoxelForm::kStored) return read_stored_volume(source_, options, session.run, session.stages.readers);
-    return keep_floats(read_volume(source_, options, session.run, session.stages.readers));
+    try {
+      if (form == VoxelForm::kStored) return read_stored_volume(source_, options, session.run, session.stages.readers);
+      return keep_floats(read_volume(source_, options, session.run, session.stages.readers));
+    } catch (const UnknownLayout& error) {  // what is missing belongs to the command line
+      throw UsageError(error.what());
+    }
   };
   StoredVolume volume = session.timed("read", [&] { return with_memory_for("the values of " + source_, read); });
   for (const std::string& remark : volume.remarks) session.warn(remark);

@@ -74,13 +74,8 @@ void write_detached(const VolumeView& volume, const std::string& path, const Wri
 }
 
 void write_headerless(const VolumeView& volume, const std::string& path) {
+  require_name_of(volume, path);
   const auto layout = detail::parse_raw_name(path);
-  if (!layout || layout->size != volume.lattice().size) {
-    const auto stem = fs::path(path).stem().string();
-    const RawLayout own{.size = volume.lattice().size, .type = volume.stored_type(), .big_endian = false};
-    throw InvalidInput(fmt::format("{}: a headerless file must say its size and type in its name: {}{}", path, stem,
-                                   detail::raw_name_end(own)));
-  }
   write_atomically(path, [&](std::ostream& out) {
     detail::encode_scalars(volume.voxels(), layout->type, [&](std::span<const std::byte> bytes) {
       out.write(reinterpret_cast<const char*>(bytes.data()), std::streamsize(bytes.size()));
@@ -94,6 +89,18 @@ std::vector<std::string> files_written(const std::string& path, const WriteOptio
   if (detail::has_extension(path, ".nhdr")) return {path, data_file_of(header_at(path), options)};
   if (detail::has_extension(path, ".nrrd") || detail::has_extension(path, ".raw")) return {path};
   throw InvalidInput(fmt::format("{}: volumes can be written as .nrrd, .nhdr and name_WxHxD_type.raw", path));
+}
+
+void require_name_of(const VolumeView& volume, const std::string& path) {
+  if (!detail::has_extension(path, ".raw")) return;
+  const auto layout = detail::parse_raw_name(path);
+  const Index3& size = volume.lattice().size;
+  if (layout && layout->size == size) return;
+  std::string name = fs::path(path).stem().string();
+  if (layout) name.erase(name.rfind('_', name.rfind('_') - 1));  // what says another size
+  const RawLayout own{.size = size, .type = layout ? layout->type : volume.stored_type(), .big_endian = false};
+  throw InvalidInput(fmt::format("{}: a headerless file must say its size and type in its name: {}{}", path, name,
+                                 detail::raw_name_end(own)));
 }
 
 void write_volume(const VolumeView& volume, const std::string& path, const WriteOptions& options) {

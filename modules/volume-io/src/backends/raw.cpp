@@ -29,7 +29,7 @@ class RawReader final : public VolumeReader {
     auto layout = options.raw ? options.raw : detail::parse_raw_name(source);
     if (layout && !options.raw) layout->big_endian = options.big_endian;
     if (!layout)
-      throw InvalidInput(
+      throw UnknownLayout(
           fmt::format("{}: a headerless file says its size and type in its name, as in "
                       "name_64x64x64_uint8.raw, or is given --dims and --type",
                       source));

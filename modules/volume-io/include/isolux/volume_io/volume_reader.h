@@ -1,5 +1,6 @@
 #pragma once
 
+#include <isolux/core/error.h>
 #include <isolux/core/registry.h>
 #include <isolux/core/run.h>
 #include <isolux/core/volume.h>
@@ -18,6 +19,12 @@ struct RawLayout {
   Index3 size{0};
   ScalarType type = ScalarType::kUint8;
   bool big_endian = false;
+};
+
+/// Neither its name nor ReadOptions::raw says what a headerless file cannot.
+class UnknownLayout : public InvalidInput {
+ public:
+  using InvalidInput::InvalidInput;
 };
 
 /// The type that voxels are read into.
