@@ -8,6 +8,7 @@
 #include <glm/geometric.hpp>
 #include <glm/trigonometric.hpp>
 #include <limits>
+#include <vector>
 
 namespace isolux {
 namespace {
@@ -39,6 +40,60 @@ Camera turned_camera(const View& view) {
 
 constexpr double kInfinitelyFar = std::numeric_limits<double>::infinity();
 constexpr double kInner = 0.98;  // of the picture's width and height: what framed points may fill
+
+/// Points by their place in one direction of the picture (x) and their depth (y), corners of the convex hull alone:
+/// from wherever an eye looks these are the ends of what it sees.
+using Outline = std::vector<glm::dvec2>;
+
+/// Across one direction of the picture: between which places the middle of all views that hold the points may be. The
+/// less the eye is moved back, the further they are apart.
+struct Reach {
+  double low = kInfinitelyFar;
+  double high = -kInfinitelyFar;
+  // A point at depth f is in view of an eye at depth -d, c to the side, if |place - c| <= half (f + d): both ends of
+  // all these intervals are met by the smallest d with c in the middle.
+  Reach(const Outline& outline, double half) {
+    for (const glm::dvec2& p : outline) {
+      low = std::min(low, p.x + half * p.y);
+      high = std::max(high, p.x - half * p.y);
+    }
+  }
+  [[nodiscard]] double middle() const { return 0.5 * (low + high); }
+  [[nodiscard]] double half_width() const { return 0.5 * (high - low); }
+};
+
+/// Where to the side an eye at depth -distance sees as much of the points on one side as on the other: near ones look
+/// farther out. `middle` is where to begin. Newton's method, halving where it would leave what is left.
+double centred(double middle, const Outline& outline, double distance) {
+  constexpr int kMostPasses = 60;
+  double low = -kInfinitelyFar;
+  double high = kInfinitelyFar;
+  for (int pass = 0; pass < kMostPasses; ++pass) {
+    glm::dvec2 first(0.0);
+    glm::dvec2 last(0.0);
+    double least = kInfinitelyFar;
+    double most = -kInfinitelyFar;
+    for (const glm::dvec2& p : outline) {
+      const glm::dvec2 seen(p.x, p.y + distance);
+      const double tangent = (seen.x - middle) / seen.y;
+      if (tangent < least) {
+        least = tangent;
+        first = seen;
+      }
+      if (tangent > most) {
+        most = tangent;
+        last = seen;
+      }
+    }
+    // The two ends would be at the same distance there; if others are the ends then, there is another pass.
+    double next = (first.x * last.y + last.x * first.y) / (first.y + last.y);
+    (least + most > 0.0 ? low : high) = middle;
+    if (!(next > low && next < high)) next = 0.5 * (low + high);
+    if (!(std::fabs(least + most) > 1e-12 * (most - least)) || !std::isfinite(next)) break;
+    middle = next;
+  }
+  return middle;
+}
 
 }  // namespace
 
@@ -76,41 +131,42 @@ Camera orbit_camera(const Lattice& volume, double azimuth_deg, double elevation_
   return orbit_camera(volume, View{.azimuth_deg = azimuth_deg, .elevation_deg = elevation_deg}, aspect);
 }
 
-// A point at depth f is in view of an eye at depth -d, c to the side, if |place - c| <= half (f + d): both ends of all
-// these intervals are met by the smallest d with c in the middle.
-void Framing::Reach::add(double place, double depth, double half) {
-  low = std::min(low, place + half * depth);
-  high = std::max(high, place - half * depth);
-}
-
-Framing::Framing(const View& view, double aspect)
-    : turned_(turned_camera(view)),
-      aspect_(aspect),
-      half_(view.projection == Projection::kOrthographic ? 0.0 : kInner * turned_.half_height),
-      across_{.low = kInfinitelyFar, .high = -kInfinitelyFar},
-      upwards_(across_),
-      nearest_(kInfinitelyFar) {}
+Framing::Framing(const View& view, double aspect) : turned_(turned_camera(view)), aspect_(aspect) {}
 
 void Framing::add(std::span<const Vec3f> points) {
-  if (empty_ && !points.empty()) origin_ = Vec3(points.front());
-  empty_ = empty_ && points.empty();
-  for (const Vec3f& point : points) {
-    const Vec3 p = Vec3(point) - origin_;
-    const double depth = glm::dot(p, turned_.forward);
-    across_.add(glm::dot(p, turned_.right), depth, half_ * aspect_);
-    upwards_.add(glm::dot(p, turned_.up), depth, half_);
-    nearest_ = std::min(nearest_, depth);
-  }
+  if (empty() && !points.empty()) origin_ = Vec3(points.front());
+  // A mesh's vertices come slice by slice, each beyond those before: a few of them all first, and the hulls are nearly
+  // what they will be.
+  for (const std::size_t step : {std::size_t(101), std::size_t(1)})
+    for (std::size_t i = 0; i < points.size(); i += step) {
+      const Vec3 p = Vec3(points[i]) - origin_;
+      const double depth = glm::dot(p, turned_.forward);
+      across_.add({glm::dot(p, turned_.right), depth});
+      upwards_.add({glm::dot(p, turned_.up), depth});
+    }
 }
 
 Camera Framing::camera() const {
-  if (empty_) throw InvalidInput("a camera that frames points: there are none");
+  if (empty()) throw InvalidInput("a camera that frames points: there are none");
   Camera camera = turned_;
   const bool is_parallel = camera.projection == Projection::kOrthographic;
-  const double wanted = std::max(across_.half_width() / aspect_, upwards_.half_width());
-  const double distance = is_parallel ? wanted - nearest_ : wanted / half_;
-  if (is_parallel) camera.half_height = wanted / kInner;
-  camera.eye = origin_ + across_.middle() * camera.right + upwards_.middle() * camera.up - distance * camera.forward;
+  const double half = is_parallel ? 0.0 : kInner * camera.half_height;  // of the view's height at depth 1
+  const Outline beside = across_.corners();
+  const Outline above = upwards_.corners();
+  const Reach across(beside, half * aspect_);
+  const Reach upwards(above, half);
+  double right = across.middle();
+  double up = upwards.middle();
+  const double wanted = std::max(across.half_width() / aspect_, upwards.half_width());
+  double distance = wanted - std::ranges::min(beside, {}, &glm::dvec2::y).y;
+  if (is_parallel) {
+    camera.half_height = wanted / kInner;
+  } else {
+    distance = wanted / half;
+    right = centred(right, beside, distance);
+    up = centred(up, above, distance);
+  }
+  camera.eye = origin_ + right * camera.right + up * camera.up - distance * camera.forward;
   return camera;
 }
 

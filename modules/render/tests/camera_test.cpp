@@ -58,6 +58,31 @@ TEST(Camera, OfTheBoxHasAllOfItInView) {
   }
 }
 
+// Of wide pictures and of deep points alike.
+TEST(Camera, FramesPointsInTheMiddle) {
+  for (int seed = 0; seed < 20; ++seed) {
+    RandomStream random(std::uint64_t(seed), 1);
+    std::vector<Vec3f> points(20);
+    for (Vec3f& p : points)
+      for (int a = 0; a < 3; ++a) p[a] = float(5 * a + 1) * random.uniform_float();
+    for (const double aspect : {0.2, 1.0, 5.0}) {
+      for (const Projection projection : kProjections) {
+        const View view{.azimuth_deg = 50.0 * seed, .elevation_deg = 8.0 * seed - 70.0, .projection = projection};
+        const Camera camera = framing_camera(points, view, aspect);
+        Vec3 low(1e9);
+        Vec3 high(-1e9);
+        for (const Vec3f& p : points) {
+          const Vec3 seen = place_of(camera, Vec3(p));
+          low = glm::min(low, seen);
+          high = glm::max(high, seen);
+        }
+        EXPECT_NEAR(low.x, -high.x, 1e-9);
+        EXPECT_NEAR(low.y, -high.y, 1e-9);
+      }
+    }
+  }
+}
+
 TEST(Camera, FramesPointsFromSideToSide) {
   for (int seed = 0; seed < 20; ++seed) {
     RandomStream random(std::uint64_t(seed), 0);

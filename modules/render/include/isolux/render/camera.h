@@ -1,6 +1,7 @@
 #pragma once
 
 #include <isolux/core/lattice.h>
+#include <isolux/render/convex_hull.h>
 
 #include <cstdint>
 #include <span>
@@ -45,39 +46,27 @@ struct View {
 [[nodiscard]] Camera orbit_camera(const Lattice& volume, double azimuth_deg, double elevation_deg, double aspect);
 
 /// The nearest camera (the narrowest, if orthographic) that has all these points (world) in view with a margin of a
-/// hundredth of the picture's size on each side: they reach it on two opposite sides. Cost: one pass. \throw
-/// InvalidInput without points, or if `up` is not a direction
+/// hundredth of the picture's size on each side: they reach it on two opposite sides and are as far from
+/// each of the others. Cost: one pass. \throw InvalidInput without points, or if `up` is not a direction
 [[nodiscard]] Camera framing_camera(std::span<const Vec3f> points, const View& view, double aspect);
 
-/// The same of points that come bit by bit, such as those of one isosurface after the other.
+/// The same of points that come bit by bit, such as those of one isosurface after the other. Keeps those alone that may
+/// be ends of what is seen: corners of two convex hulls.
 class Framing {
  public:
   /// \throw InvalidInput if `up` is not a direction
   Framing(const View& view, double aspect);
   void add(std::span<const Vec3f> points);
-  [[nodiscard]] bool empty() const { return empty_; }
+  [[nodiscard]] bool empty() const { return across_.empty(); }
   /// \throw InvalidInput without points
   [[nodiscard]] Camera camera() const;
 
  private:
-  /// Across one direction of the picture: between which places the middle of all views that hold the points may be. The
-  /// less the eye is moved back, the further they are apart.
-  struct Reach {
-    double low;
-    double high;
-    void add(double place, double depth, double half);
-    [[nodiscard]] double middle() const { return 0.5 * (low + high); }
-    [[nodiscard]] double half_width() const { return 0.5 * (high - low); }
-  };
-
   Camera turned_;
   double aspect_;
-  double half_;  ///< of the view's height at depth 1, without the margin; 0 if orthographic
-  bool empty_ = true;
-  Vec3 origin_{0.0};
-  Reach across_;
-  Reach upwards_;
-  double nearest_;
+  Vec3 origin_{0.0};    ///< the first point
+  ConvexHull across_;   ///< from there, how far to the right and how deep
+  ConvexHull upwards_;  ///< how far up and how deep
 };
 
 }  // namespace isolux
