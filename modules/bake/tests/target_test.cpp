@@ -1,7 +1,6 @@
 // Bakes towards an error or within a time whose rays are as many for every site.
 #include <gtest/gtest.h>
 #include <isolux/bake.h>
-#include <isolux/core/stopwatch.h>
 #include <isolux/volume_io/read.h>
 
 #include <cmath>
@@ -9,6 +8,7 @@
 #include <vector>
 
 #include "grid_index.h"
+#include "processor_time.h"
 #include "rms_difference.h"
 
 namespace isolux::test {
@@ -106,10 +106,14 @@ TEST(Target, EndsInTime) {
   settings.trace.bounces = 0;
   settings.target_seconds = 2.0;
   settings.target_rmse = 1e-5;
-  const Stopwatch watch;
-  const BakeResult result = bake(volume, one_bright_pixel(), settings, builtin_stages(), {});
-  EXPECT_LT(watch.seconds(), 6.0);
-  EXPECT_GT(result.most_rays, 4u);  // which it begins with, a tenth of the time even on slow machines
+  std::uint64_t most_rays = 0;
+  for (int attempt = 0; attempt < 3 && most_rays <= 4; ++attempt) {
+    const ProcessorTime time;
+    most_rays = bake(volume, one_bright_pixel(), settings, builtin_stages(), {.threads = 2}).most_rays;
+    EXPECT_LT(time.seconds(), 6.0) << "two threads work 4 s";
+  }
+  // Which it begins with: a tenth of the time on slow machines, all of it only while others are busy on them.
+  EXPECT_GT(most_rays, 4u);
 }
 
 // Sharper texels are right between themselves, and an error asked is their own.

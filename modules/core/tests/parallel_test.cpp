@@ -2,13 +2,14 @@
 #include <isolux/core/error.h>
 #include <isolux/core/parallel.h>
 #include <isolux/core/random.h>
-#include <isolux/core/stopwatch.h>
 
 #include <algorithm>
 #include <atomic>
 #include <cmath>
 #include <limits>
 #include <vector>
+
+#include "processor_time.h"
 
 namespace isolux {
 namespace {
@@ -38,16 +39,18 @@ TEST(ParallelBlocks, MayBeAsLargeAsANumberCanBe) {
 // took thirty times as long as the first.
 TEST(ParallelBlocks, AreAsFastAfterManyLoopsAsBefore) {
   const auto seconds_of_loops = [](int loops) {
-    const Stopwatch watch;
+    const test::ProcessorTime time;
     for (int i = 0; i < loops; ++i) parallel_blocks(8, 1, {.threads = 2}, "", [](const Block& /*block*/) {});
-    return watch.seconds();
+    return time.seconds();
   };
   (void)seconds_of_loops(10);
   const double first = seconds_of_loops(200);
   (void)seconds_of_loops(10'000);
+  // Threads that wait for one that a busy machine has put aside are at work, too: the best of many tries counts.
+  const double most = 5.0 * first + 0.005;
   double later = seconds_of_loops(200);
-  for (int i = 0; i < 4; ++i) later = std::min(later, seconds_of_loops(200));
-  EXPECT_LT(later, 5.0 * first + 0.005) << first << " s before, " << later << " s after";
+  for (int i = 0; i < 50 && later >= most; ++i) later = std::min(later, seconds_of_loops(200));
+  EXPECT_LT(later, most) << first << " s before, " << later << " s after";
 }
 
 TEST(ParallelBlocks, StopsWhenAsked) {
