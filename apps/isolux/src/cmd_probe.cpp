@@ -94,8 +94,9 @@ std::vector<std::string> told_apart(std::vector<std::string> names, const std::v
   for (std::string& name : names) {
     if (!is_among(own, name)) continue;
     std::string other = name;
-    do other += "_in";
-    while (is_among(own, other) || is_among(names, other));
+    do {
+      other += "_in";
+    } while (is_among(own, other) || is_among(names, other));
     session.say(fmt::format("{}: its column '{}' is '{}' in {}", options.points, name, other, options.output));
     name = other;
   }
