@@ -10,33 +10,28 @@
 #include <utility>
 #include <vector>
 
-#include "bin_order.h"
-#include "near_field.h"
-#include "sample_looks.h"
-#include "shepard.h"
+#include "lit_texels.h"
+#include "texel_looks.h"
 #include "wide/denoise_kernels.h"
 #include "window_shares.h"
 
 namespace isolux {
 namespace {
 
-// Samples, whole shells of a lattice each; the light decides which of them is wide enough.
+using wide::LatticeSamples;
+
+// Samples: whole shells where all texels are lit and as far apart along all axes; the light decides which is wide
+// enough.
 constexpr std::array<std::size_t, kWindowCount> kWindows = {57, 123, 203};
-static_assert(kWindows.back() <= wide::WindowLimits::kMost);
-constexpr std::array<double, 3> kSteps = {1.0, 2.0, 4.0};  // of the openness, grid spacings
-// Of the whole range of isovalues in grid steps: a coordinate of the fit, not of the search.
-constexpr double kIsovalueLength = 2.0;
-constexpr float kUnitLength = 2.0f;  // of normals and openness likewise
+constexpr float kUnitLength = 2.0f;  // of normals and openness, grid spacings
 constexpr float kRidge = 0.001f;
 constexpr std::size_t kTouching = 19;  // a sample and those about it
 constexpr std::size_t kAround = 27;    // where risks are averaged; more would blur the choice near edges
-constexpr float kOnALattice = 0.01f;   // of a bin's side: rounding, and no more
-/// Part of the texels that are lit: where fewer are, a bin for each would be empty mostly.
-constexpr double kSparse = 0.25;
 /// Samples farther apart in light than so many standard errors are of two sides of an edge, and not fitted together.
 constexpr float kApart = 5.0f;
 /// Standard error, in parts of the brightest sample, that is left alone: a tenth of a step of eight bits.
 constexpr double kUnseen = 4e-4;
+constexpr std::size_t kRowsABlock = 4;
 
 /// What the windows of one sample say of it, to be averaged over the samples around: WindowsAround's numbers.
 struct Findings {
@@ -51,116 +46,88 @@ struct Findings {
 
 class Denoiser {
  public:
-  /// `radiance` and `variance` are the samples', or parts of them.
-  Denoiser(const Volume& volume, const Lattice& texels, const SampleSet& samples, const std::vector<float>& radiance,
-           const std::vector<float>& variance, const Run& run)
-      : sites_(samples.sites),
-        radiance_(radiance),
-        variance_(variance),
-        channels_(std::size_t(samples.channels)),
+  Denoiser(const Volume& volume, const Lattice& texels, const SampleSet& samples, const Run& run)
+      : channels_(std::size_t(samples.channels)),
         run_(run),
-        kernels_(wide::denoise_kernels(channels_)) {
-    const ShepardSpace space(volume, samples,
-                             ShepardOptions{.k = int(kWindows.back()), .isovalue_length = kIsovalueLength});
-    // A bin for each texel gives a lattice its stencil; few samples are found sooner in larger ones.
-    const double lit = double(samples.size()) / double(texels.count());
-    BinOrder bins(space.samples(), space.far_corner(), lit > kSparse && lit < 1.0 ? lit : 1.0);
-    order_ = std::move(bins.points);
-    all_.bins = bins.size;
-    all_.starts = std::move(bins.starts);
-    all_.side = bins.side;
+        kernels_(wide::denoise_kernels(channels_)),
+        lit_(volume.lattice(), samples.sites, texels, run) {
+    all_.size = {texels.size.x, texels.size.y, texels.size.z};
+    all_.at = std::move(lit_.at);
     all_.channels = channels_;
-    all_.looks.resize(order_.size() * all_.stride());
-    for (std::size_t s = 0; s < order_.size(); ++s)
-      for (std::size_t a = 0; a < wide::BinnedSamples::kNormal; ++a)
-        all_.look(s)[a] = space.samples()[order_[s]].x[a] / bins.side;
-    for (std::size_t a = 0; a < 3; ++a) {
-      all_.places[a].resize(order_.size() + wide::BinnedSamples::kPastTheEnd);
-      for (std::size_t s = 0; s < order_.size(); ++s) all_.places[a][s] = all_.look(s)[a];
-    }
-    if (are_on_a_lattice()) all_.stencil = wide::Stencil::of(all_.bins, kWindows.back());
-    const float brightest = *std::max_element(radiance.begin(), radiance.end());
-    if (brightest > 0.0f) unit_ = std::ldexp(1.0f, -std::max(std::ilogb(brightest), -120));
-    look(volume);
-    const double unseen = kUnseen * double(brightest * unit_);
-    limits_.unseen = float(unseen * unseen);
+    const Vec3 spacing = volume.lattice().frame.spacing();
+    const Vec3 step = texels.frame.spacing() / std::cbrt(spacing.x * spacing.y * spacing.z);
+    all_.stencil = wide::Stencil::of({step.x, step.y, step.z});
+    look_at(volume, samples.sites, lit_.sites, run, all_);
   }
 
-  [[nodiscard]] std::vector<float> light() {
+  /// `radiance` and `variance` are the samples', or parts of them.
+  [[nodiscard]] std::vector<float> light(const std::vector<float>& radiance, const std::vector<float>& variance) {
+    const float brightest = *std::max_element(radiance.begin(), radiance.end());
+    unit_ = brightest > 0.0f ? std::ldexp(1.0f, -std::max(std::ilogb(brightest), -120)) : 1.0f;
+    const double unseen = kUnseen * double(brightest * unit_);
+    limits_.unseen = float(unseen * unseen);
+    take_light(radiance, variance, lit_, unit_, all_);
     fit();
     multiply_rests();
-    std::vector<float> values = radiance_;
+    std::vector<float> texels(lit_.sites.size() * channels_);
     for_each(kAround, [&](std::size_t s, std::span<const std::uint32_t> around) {
-      if (is_known(around)) return;
-      const WindowShares shares = shares_of(s, around);
+      const bool known = is_known(around);
+      const WindowShares shares = known ? WindowShares{} : shares_of(s, around);
       for (std::size_t c = 0; c < channels_; ++c) {
-        double e = shares.back() * double(radiance(s)[c]);
+        double e = (known ? 1.0 : shares.back()) * double(this->radiance(s)[c]);
         for (std::size_t w = 0; w < kWindows.size(); ++w) e += shares[w] * double(smooth(w, s)[c]);
-        values[order_[s] * channels_ + c] = std::max(0.0f, float(e / double(unit_)));
+        texels[s * channels_ + c] = known ? float(e / double(unit_)) : std::max(0.0f, float(e / double(unit_)));
       }
     });
+    std::vector<float> values(radiance.size());
+    for (std::size_t s = 0; s < lit_.of_site.size(); ++s)
+      std::copy_n(&texels[lit_.of_site[s] * channels_], channels_, &values[s * channels_]);
     return values;
   }
 
  private:
-  /// Whether all samples are at the same place in their bins, and alone.
-  [[nodiscard]] bool are_on_a_lattice() const {
-    for (std::size_t b = 0; b + 1 < all_.starts.size(); ++b)
-      if (all_.starts[b + 1] - all_.starts[b] > 1) return false;
-    for (std::size_t a = 0; a < 3; ++a) {
-      const std::span<const float> places(all_.places[a].data(), order_.size());
-      const float first = places[0] - std::floor(places[0]);
-      if (!std::all_of(places.begin(), places.end(),
-                       [&](float at) { return std::fabs(at - std::floor(at) - first) < kOnALattice; }))
-        return false;
-    }
-    return true;
-  }
-
-  /// Copies the samples in their order, with the openness in front of each.
-  void look(const Volume& volume) {
-    const NearField near_field(volume);
-    const double outwards = near_field.outwards(sites_);
-    parallel_blocks(order_.size(), 512, run_, "", [&](const Block& block) {
-      SampleLooks looks(near_field, sites_);
-      looks.look(std::span(order_).subspan(block.begin, block.end - block.begin));
-      for (std::size_t t = 0; t < kSteps.size(); ++t) {
-        looks.find_openness(outwards * kSteps[t]);
-        for (std::size_t s = block.begin; s < block.end; ++s)
-          all_.look(s)[wide::BinnedSamples::kOpenness + t] = looks.openness(s - block.begin);
-      }
-      for (std::size_t s = block.begin; s < block.end; ++s) {
-        float* const look = all_.look(s);
-        const Vec3f& normal = sites_.normals[order_[s]];
-        for (int a = 0; a < 3; ++a) look[wide::BinnedSamples::kNormal + std::size_t(a)] = normal[a];
-        look[wide::BinnedSamples::kVariance] = variance_[order_[s]] * unit_ * unit_;
-        const float* const light = &radiance_[order_[s] * channels_];
-        std::transform(light, light + channels_, look + wide::BinnedSamples::kLight,
-                       [&](float e) { return e * unit_; });
-      }
-    });
-  }
-
-  [[nodiscard]] const float* radiance(std::size_t s) const { return all_.look(s) + wide::BinnedSamples::kLight; }
+  [[nodiscard]] const float* radiance(std::size_t s) const { return all_.look(s) + LatticeSamples::kLight; }
   [[nodiscard]] const float* smooth(std::size_t window, std::size_t s) const {
     return &smooth_[(s * kWindows.size() + window) * channels_];
   }
 
+  /// Calls row(y, z), in parallel.
+  template <class Row>
+  void for_rows(const Row& row) const {
+    const auto height = std::size_t(all_.size[1]);
+    parallel_blocks(height * std::size_t(all_.size[2]), kRowsABlock, run_, "denoise", [&](const Block& block) {
+      for (std::size_t r = block.begin; r < block.end; ++r) row(int(r % height), int(r / height));
+    });
+  }
+
+  /// Calls visit(sample, the `count` nearest of the stencil, itself the first).
   template <class Visit>
   void for_each(std::size_t count, const Visit& visit) const {
-    parallel_blocks(order_.size(), 512, run_, "denoise", [&](const Block& block) {
-      wide::NearSamples near;
-      for (std::size_t s = block.begin; s < block.end; ++s) {
-        kernels_.nearest(all_, s, count, near);
-        visit(s, std::span<const std::uint32_t>(near.samples.data(), near.count));
+    for_rows([&](int y, int z) {
+      std::vector<std::uint32_t> near(count);
+      for (int x = 0; x < all_.size[0]; ++x) {
+        const std::uint32_t s = all_.at[all_.row(y, z) + std::size_t(x)];
+        if (s == LatticeSamples::kNone) continue;
+        std::size_t found = 0;
+        for (const wide::Stencil::Member& member : all_.stencil.members) {
+          const std::array<int, 3> at{x + member.step[0], y + member.step[1], z + member.step[2]};
+          if (at[0] < 0 || at[0] >= all_.size[0] || at[1] < 0 || at[1] >= all_.size[1] || at[2] < 0 ||
+              at[2] >= all_.size[2])
+            continue;
+          const std::uint32_t other = all_.at[all_.row(at[1], at[2]) + std::size_t(at[0])];
+          if (other == LatticeSamples::kNone) continue;
+          near[found++] = other;
+          if (found == count) break;
+        }
+        visit(s, std::span<const std::uint32_t>(near.data(), found));
       }
     });
   }
 
   /// Of two samples' light, by their normals.
   [[nodiscard]] float likeness(std::size_t a, std::size_t b) const {
-    const float* const na = all_.look(a) + wide::BinnedSamples::kNormal;
-    const float* const nb = all_.look(b) + wide::BinnedSamples::kNormal;
+    const float* const na = all_.look(a) + LatticeSamples::kNormal;
+    const float* const nb = all_.look(b) + LatticeSamples::kNormal;
     const float cosine = na[0] * nb[0] + na[1] * nb[1] + na[2] * nb[2];
     return (cosine > 0.0f ? cosine * cosine : 0.0f) + 1e-6f;
   }
@@ -168,25 +135,32 @@ class Denoiser {
   /// Whether none of these samples has noise that could be seen.
   [[nodiscard]] bool is_known(std::span<const std::uint32_t> samples) const {
     return std::all_of(samples.begin(), samples.end(),
-                       [&](std::uint32_t s) { return all_.look(s)[wide::BinnedSamples::kVariance] <= limits_.unseen; });
+                       [&](std::uint32_t s) { return all_.look(s)[LatticeSamples::kVariance] <= limits_.unseen; });
   }
 
   void fit() {
-    findings_.resize(order_.size());
-    smooth_.resize(order_.size() * kWindows.size() * channels_);
-    parallel_blocks(order_.size(), 512, run_, "denoise", [&](const Block& block) {
-      wide::NearSamples near;
-      wide::WindowFits fits;
-      for (std::size_t s = block.begin; s < block.end; ++s) {
-        kernels_.nearest(all_, s, kWindows.back(), near);
-        const bool fitted = kernels_.fit(all_, s, near, limits_, fits);
-        for (std::size_t w = 0; w < kWindows.size(); ++w)
-          std::copy_n(fitted ? fits.light[w].data() : radiance(s), channels_,
-                      &smooth_[(s * kWindows.size() + w) * channels_]);
-        findings_[s].variance = all_.look(s)[wide::BinnedSamples::kVariance];
-        if (fitted) find(s, fits);
+    findings_.assign(lit_.sites.size(), {});
+    smooth_.resize(lit_.sites.size() * kWindows.size() * channels_);
+    for_rows([&](int y, int z) {
+      std::array<wide::WindowFits, wide::DenoiseKernels::kMostLanes> fits;
+      const auto row = std::span(all_.at).subspan(all_.row(y, z), std::size_t(all_.size[0]));
+      for (std::size_t x = 0; x < row.size(); x += kernels_.lanes) {
+        const auto here = row.subspan(x, std::min(kernels_.lanes, row.size() - x));
+        const auto is_there = [](std::uint32_t s) { return s != LatticeSamples::kNone; };
+        if (std::none_of(here.begin(), here.end(), is_there)) continue;
+        kernels_.fit_row(all_, {int(x), y, z}, limits_, std::span(fits).first(here.size()));
+        for (std::size_t n = 0; n < here.size(); ++n)
+          if (is_there(here[n])) keep(here[n], fits[n]);
       }
     });
+  }
+
+  void keep(std::size_t s, const wide::WindowFits& fits) {
+    for (std::size_t w = 0; w < kWindows.size(); ++w)
+      std::copy_n(fits.is_fitted ? fits.light[w].data() : radiance(s), channels_,
+                  &smooth_[(s * kWindows.size() + w) * channels_]);
+    findings_[s].variance = all_.look(s)[LatticeSamples::kVariance];
+    if (fits.is_fitted) find(s, fits);
   }
 
   void find(std::size_t s, const wide::WindowFits& fits) {
@@ -255,15 +229,12 @@ class Denoiser {
     return window_shares(around);
   }
 
-  const Sites& sites_;
-  const std::vector<float>& radiance_;
-  const std::vector<float>& variance_;
   std::size_t channels_;
   const Run& run_;
   wide::DenoiseKernels kernels_;
-  float unit_ = 1.0f;                 ///< a power of two times which the brightest light is some 1 to 2
-  std::vector<std::uint32_t> order_;  ///< of the given samples; all that follows is in the order of bins
-  wide::BinnedSamples all_;
+  LitTexels lit_;
+  float unit_ = 1.0f;  ///< a power of two times which the brightest light is some 1 to 2
+  LatticeSamples all_;
   std::vector<Findings> findings_;
   std::vector<float> smooth_;  ///< the windows' light; the channels of each, a sample after the other
   wide::WindowLimits limits_{.counts = kWindows, .apart = kApart, .unseen = 0.0f, .ridge = kRidge, .unit = kUnitLength};
@@ -272,19 +243,20 @@ class Denoiser {
 }  // namespace
 
 DenoisedLight denoised_light(const Volume& volume, const SampleSet& samples, const Lattice& texels, const Run& run) {
+  Denoiser denoiser(volume, texels, samples, run);
   DenoisedLight light;
   if (samples.lamps.empty()) {
-    light.rest = Denoiser(volume, texels, samples, samples.radiance, samples.variance, run).light();
+    light.rest = denoiser.light(samples.radiance, samples.variance);
     return light;
   }
-  light.lamps = Denoiser(volume, texels, samples, samples.lamps, samples.lamps_variance, run).light();
+  light.lamps = denoiser.light(samples.lamps, samples.lamps_variance);
   light.noisy_rest.resize(samples.radiance.size());
   std::vector<float> variance(samples.size());
   for (std::size_t v = 0; v < light.noisy_rest.size(); ++v)
     light.noisy_rest[v] = samples.radiance[v] - samples.lamps[v];
   for (std::size_t s = 0; s < variance.size(); ++s)
     variance[s] = std::max(0.0f, samples.variance[s] - samples.lamps_variance[s]);
-  light.rest = Denoiser(volume, texels, samples, light.noisy_rest, variance, run).light();
+  light.rest = denoiser.light(light.noisy_rest, variance);
   return light;
 }
 

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "denoise.h"
+#include "lit_texels.h"
 #include "near_field.h"
 #include "samples.h"
 #include "sharpen.h"
@@ -117,8 +118,7 @@ class Direct final : public Resampler {
           found[i] = point_at(texels, to_texels.world(Vec3(sites.positions[first + i])));
       });
       for (std::size_t i = 0; i < count; ++i) {
-        if (!found[i]) throw InvalidInput(not_at_a_texel(sites, first + i));
-        float* const values = &result.values[*found[i] * channels];
+        float* const values = &result.values[texel_of(sites, first + i, found[i]) * channels];
         if (std::isnan(*values)) {
           std::copy_n(&light[(first + i) * channels], channels, values);
         } else {
@@ -127,14 +127,6 @@ class Direct final : public Resampler {
       }
     }
     add_repeated(sites, light, to_texels, repeated, result);
-  }
-
-  static std::string not_at_a_texel(const Sites& sites, std::size_t s) {
-    const Vec3f& position = sites.positions[s];
-    return fmt::format(
-        "sample {} at index ({}, {}, {}) is not at a texel centre: resampler direct needs a sampler that puts its "
-        "sites there, such as texels; any other resampler takes scattered sites",
-        s, position.x, position.y, position.z);
   }
 
   /// Texels with several samples get their mean.

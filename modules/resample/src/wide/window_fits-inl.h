@@ -1,4 +1,5 @@
-// Linear functions fitted to windows of samples. Included once per instruction set.
+// Linear functions fitted to the windows of samples that are side by side on a lattice, one a lane. Included once per
+// instruction set.
 #if defined(ISOLUX_WIDE_WINDOW_FITS_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef ISOLUX_WIDE_WINDOW_FITS_INL_H_
 #undef ISOLUX_WIDE_WINDOW_FITS_INL_H_
@@ -10,218 +11,262 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdint>
+#include <span>
 #include <utility>
 
 #include "wide/denoise_kernels.h"
 #include "wide/eight-inl.h"
-#include "wide/window_members-inl.h"
+#include "wide/lattice_samples.h"
+#include "wide/row_samples-inl.h"
+#include "wide/sample_vectors-inl.h"
+#include "wide/window_solution-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace isolux::wide {
 namespace HWY_NAMESPACE {
 
-inline constexpr std::size_t kUnknowns = kCoordinates + 1;
-/// A window for each lane, and one to spare.
-using Windows = Several<double, 4>;
+/// So many lanes are solved at once, in doubles.
+inline constexpr std::size_t kSolvedLanes = std::min<std::size_t>(kRowLanes, 8);
 
-/// Sums over the first samples: moments of the coordinates and the light by weights. `to` has a lane a window.
-template <std::size_t kRow, std::size_t kChannels>
-HWY_INLINE void add_row(const Members<kChannels>& members, const float* weights, std::size_t padded,
-                        double* HWY_RESTRICT to) {
-  constexpr std::size_t kColumns = kUnknowns - kRow;
-  F sums[kColumns];
-  F light[kChannels];
-  ISOLUX_UNROLL
-  for (std::size_t j = 0; j < kColumns; ++j) sums[j] = hn::Zero(kF);
-  ISOLUX_UNROLL
-  for (std::size_t c = 0; c < kChannels; ++c) light[c] = hn::Zero(kF);
-  for (std::size_t n = 0; n < padded; n += hn::Lanes(kF)) {
-    auto w = hn::Load(kF, weights + n);
-    if constexpr (kRow == 0) {
-      sums[0] = hn::Add(sums[0], w);
-    } else {
-      const auto own = hn::Load(kF, members.numbers[kRow - 1] + n);
-      w = hn::Mul(w, own);
-      sums[0] = hn::MulAdd(w, own, sums[0]);
-    }
-    ISOLUX_UNROLL
-    for (std::size_t j = 1; j < kColumns; ++j)
-      sums[j] = hn::MulAdd(w, hn::Load(kF, members.numbers[kRow + j - 1] + n), sums[j]);
-    ISOLUX_UNROLL
-    for (std::size_t c = 0; c < kChannels; ++c)
-      light[c] = hn::MulAdd(w, hn::Load(kF, members.numbers[BinnedSamples::kLight + c] + n), light[c]);
+/// The windows of a lane's sample, and of the next ones along x in the lanes that follow.
+template <std::size_t kChannels>
+class RowWindows {
+ public:
+  RowWindows() = default;
+
+  /// Of the sample at a point, and of those after it along x.
+  void fit(const LatticeSamples& all, const std::array<int, 3>& point, const WindowLimits& limits,
+           std::span<WindowFits> fits) {
+    compare(all, point, limits);
+    bool any = false;
+    for (std::size_t n = 0; n < fits.size(); ++n) any |= fits[n].is_fitted = variance_[n] > limits.unseen;
+    if (!any) return;
+    weigh(all.stencil);
+    std::array<double, kUnknowns> units;  // of the coordinates
+    units.fill(1.0);
+    std::fill(units.begin() + 1 + LatticeSamples::kPlaces + LatticeSamples::kNormal, units.end(), double(limits.unit));
+    for (std::size_t w = 0; w < kWindowCount; ++w)
+      for (std::size_t lane = 0; lane < kRowLanes; lane += kSolvedLanes)
+        solve(w, lane, units, double(limits.ridge), fits);
+    measure_noise(all.stencil, fits);
   }
-  ISOLUX_UNROLL
-  for (std::size_t j = 0; j < kColumns; ++j) to[4 * j] = double(hn::GetLane(hn::SumOfLanes(kF, sums[j])));
-  ISOLUX_UNROLL
-  for (std::size_t c = 0; c < kChannels; ++c)
-    to[4 * (kColumns + c)] = double(hn::GetLane(hn::SumOfLanes(kF, light[c])));
-}
 
-/// Where a row's moments begin: its columns from its own on, then the light's channels.
-template <std::size_t kChannels>
-constexpr std::size_t row_start(std::size_t row) {
-  std::size_t start = 0;
-  for (std::size_t r = 0; r < row; ++r) start += kUnknowns - r + kChannels;
-  return start;
-}
+ private:
+  static constexpr std::size_t kMoments = row_start<kChannels>(kUnknowns);
+  static constexpr std::size_t kWeight = kCoordinates + kChannels;
 
-template <std::size_t kChannels>
-struct Moments {
-  static constexpr std::size_t kCount = row_start<kChannels>(kUnknowns);
-  HWY_ALIGN double sums[kCount][4]{};  ///< a lane a window
+  /// Sums of one window as Solution asks for them.
+  struct Sums {
+    const float (*moments)[kRowLanes];
+    std::size_t lane;
+    const std::array<double, kUnknowns>& units;
 
+    [[nodiscard]] HWY_INLINE Several<double, kSolvedLanes> at(std::size_t row, std::size_t column) const {
+      return of(row_start<kChannels>(row) + column - row, units[row] * units[column]);
+    }
+    [[nodiscard]] HWY_INLINE Several<double, kSolvedLanes> light(std::size_t row, std::size_t channel) const {
+      return of(row_start<kChannels>(row) + kUnknowns - row + channel, units[row]);
+    }
+    [[nodiscard]] HWY_INLINE Several<double, kSolvedLanes> of(std::size_t moment, double unit) const {
+      return mul(load<kSolvedLanes>(moments[moment] + lane, 0.0), all<double, kSolvedLanes>(unit));
+    }
+  };
+
+  /// Copies shells, nearest first, until every sample's widest window is full, and says how alike members are in light,
+  /// by normals and by light: 0 of those that are not there or not in the widest window.
+  void compare(const LatticeSamples& all, const std::array<int, 3>& point, const WindowLimits& limits) {
+    const Stencil& stencil = all.stencil;
+    samples_.copy(all, point, 0);
+    samples_.begin(stencil);
+    const auto none = hn::Zero(kF);
+    F likenesses = none;
+    F variances = none;
+    F largest = none;
+    F count = none;
+    F far[kWindowCount] = {none, none, none};
+    const auto wanted = hn::Set(kF, float(limits.counts.back()));
+    const auto held = hn::Ge(hn::Load(kF, samples_.own(LatticeSamples::kVariance)), none);
+    std::size_t rows = 1;
+    std::size_t m = 0;
+    for (shells_ = 0; shells_ < stencil.shells.size(); ++shells_) {
+      const auto open = hn::And(held, hn::Lt(count, wanted));
+      if (hn::AllFalse(kF, open)) break;
+      const Stencil::Shell& shell = stencil.shells[shells_];
+      for (; rows < shell.rows; ++rows) samples_.copy(all, point, rows);
+      for (std::size_t w = 0; w < kWindowCount; ++w) {
+        const auto wider = hn::Lt(count, hn::Set(kF, float(limits.counts[w])));
+        far[w] = hn::IfThenElse(wider, hn::Set(kF, shell.distance), far[w]);
+      }
+      for (; m < shell.end; ++m) {
+        const Stencil::Member& member = stencil.members[m];
+        auto cosine = none;
+        ISOLUX_UNROLL
+        for (std::size_t a = LatticeSamples::kNormal; a < LatticeSamples::kOpenness; ++a)
+          cosine = hn::MulAdd(samples_.number(member, a), hn::Load(kF, samples_.own(a)), cosine);
+        const auto variance = samples_.number(member, LatticeSamples::kVariance);
+        const auto is_there = hn::And(open, hn::Ge(variance, none));
+        const auto like = hn::IfThenElseZero(is_there, like_by(cosine));
+        hn::Store(like, kF, likeness_[m]);
+        count = hn::Add(count, hn::IfThenElseZero(is_there, hn::Set(kF, 1.0f)));
+        likenesses = hn::Add(likenesses, like);
+        variances = hn::MulAdd(like, variance, variances);
+        largest = hn::Max(largest, hn::IfThenElseZero(is_there, variance));
+      }
+    }
+    hn::Store(largest, kF, variance_);
+    for (std::size_t w = 0; w < kWindowCount; ++w) hn::Store(far[w], kF, far_[w]);
+    const auto mean = hn::Div(variances, hn::Max(likenesses, hn::Set(kF, 1e-6f)));
+    const auto apart = hn::MulAdd(mean, hn::Set(kF, limits.apart * limits.apart), hn::Set(kF, float(kNoError)));
+    const auto scale = hn::Div(hn::Set(kF, 1.0f / float(kChannels)), apart);
+    for (std::size_t n = 0; n < m; ++n) {
+      auto squares = none;
+      for (std::size_t c = 0; c < kChannels; ++c) {
+        const auto less = samples_.relative(stencil.members[n], LatticeSamples::kLight + c);
+        squares = hn::MulAdd(less, less, squares);
+      }
+      const auto side = same_side(hn::Mul(squares, scale));
+      hn::Store(hn::Mul(hn::Load(kF, likeness_[n]), side), kF, likeness_[n]);
+    }
+  }
+
+  /// How much the members of a shell count in a window, beside their likeness.
+  [[nodiscard]] HWY_INLINE F share(const Stencil::Shell& shell, std::size_t window) const {
+    const auto far = hn::Load(kF, far_[window]);
+    const auto distance = hn::Set(kF, shell.distance);
+    const auto fall = hn::Div(hn::Mul(distance, hn::Set(kF, 0.75f)), hn::Max(far, hn::Set(kF, 1e-6f)));
+    return hn::IfThenElseZero(hn::Le(distance, far), hn::Sub(hn::Set(kF, 1.0f), fall));
+  }
+  /// The first that any of them are in. \pre the widest
+  [[nodiscard]] HWY_INLINE std::size_t first_window(const Stencil::Shell& shell) const {
+    std::size_t window = 0;
+    while (hn::AllFalse(kF, hn::Le(hn::Set(kF, shell.distance), hn::Load(kF, far_[window])))) ++window;
+    return window;
+  }
+
+  /// Sums the windows' moments, shell by shell.
+  void weigh(const Stencil& stencil) {
+    for (auto& window : moments_)
+      for (auto& moment : window) hn::Store(hn::Zero(kF), kF, moment);
+    std::size_t m = 0;
+    for (std::size_t s = 0; s < shells_; ++s) {
+      const Stencil::Shell& shell = stencil.shells[s];
+      std::size_t count = 0;
+      for (; m < shell.end; ++m, ++count) {
+        const Stencil::Member& member = stencil.members[m];
+        for (std::size_t a = 0; a < kCoordinates; ++a) hn::Store(samples_.coordinate(member, a), kF, shell_[count][a]);
+        for (std::size_t c = 0; c < kChannels; ++c)
+          hn::Store(samples_.relative(member, LatticeSamples::kLight + c), kF, shell_[count][kCoordinates + c]);
+        hn::Store(hn::Load(kF, likeness_[m]), kF, shell_[count][kWeight]);
+      }
+      add_rows(shell, count, std::make_index_sequence<kUnknowns>());
+    }
+  }
   template <std::size_t... kRows>
-  HWY_INLINE void add(const Members<kChannels>& members, std::size_t padded, std::size_t window,
-                      std::index_sequence<kRows...> /*rows*/) {
-    (add_row<kRows, kChannels>(members, members.weights[window], padded, &sums[row_start<kChannels>(kRows)][window]),
-     ...);
+  HWY_INLINE void add_rows(const Stencil::Shell& shell, std::size_t count, std::index_sequence<kRows...> /*rows*/) {
+    (add_row<kRows>(shell, count), ...);
   }
-  [[nodiscard]] HWY_INLINE Windows at(std::size_t row, std::size_t column) const {
-    return load<4>(sums[row_start<kChannels>(row) + column - row], 0.0);
-  }
-  [[nodiscard]] HWY_INLINE Windows light(std::size_t row, std::size_t channel) const {
-    return load<4>(sums[row_start<kChannels>(row) + kUnknowns - row + channel], 0.0);
-  }
-};
-
-/// One over those that are positive, else 0.
-HWY_INLINE Windows inverse(const Windows& a) {
-  Windows s;
-  ISOLUX_UNROLL
-  for (std::size_t p = 0; p < Windows::kParts; ++p) {
-    const typename Windows::Tag d;
-    const auto positive = hn::Gt(a.part[p], hn::Zero(d));
-    s.part[p] =
-        hn::IfThenElseZero(positive, hn::Div(hn::Set(d, 1.0), hn::IfThenElse(positive, a.part[p], hn::Set(d, 1.0))));
-  }
-  return s;
-}
-
-/// What the windows' functions are at the sample, and how they follow a sample for each unit of its weight: `there` of
-/// one at the origin, and `slopes` for each unit of a coordinate.
-template <std::size_t kChannels>
-struct Solution {
-  HWY_ALIGN double light[kChannels][4];  ///< less the sample's own
-  HWY_ALIGN double there[4];
-  HWY_ALIGN double slopes[kCoordinates][4];
-
-  HWY_INLINE void solve(const Moments<kChannels>& moments, double ridge);
-};
-
-/// Lancaster & Salkauskas, "Surfaces generated by moving least squares methods", 1981, of degree one. Slopes are
-/// eliminated first, so that what is left is the value's own equation; the light is taken relative to its mean.
-template <std::size_t kChannels>
-HWY_INLINE void Solution<kChannels>::solve(const Moments<kChannels>& moments, double ridge) {
-  constexpr std::size_t kSlopes = kCoordinates;
-  Windows a[kUnknowns][kUnknowns];  // lower triangle; the value last
-  Windows b[kUnknowns][kChannels];
-  const Windows total = moments.at(0, 0);
-  const Windows per_total = inverse(total);
-  auto held = all<double, 4>(0.0);
-  for (std::size_t i = 0; i < kSlopes; ++i) held = add(held, moments.at(i + 1, i + 1));
-  held = mul_add(held, all<double, 4>(ridge / double(kSlopes)), mul(total, all<double, 4>(1e-30)));
-  Windows mean[kChannels];
-  for (std::size_t c = 0; c < kChannels; ++c) {
-    mean[c] = mul(moments.light(0, c), per_total);
-    b[kSlopes][c] = all<double, 4>(0.0);
-  }
-  for (std::size_t i = 0; i < kSlopes; ++i) {
-    for (std::size_t j = 0; j <= i; ++j) a[i][j] = moments.at(j + 1, i + 1);
-    a[i][i] = add(a[i][i], held);
-    a[kSlopes][i] = moments.at(0, i + 1);
-    for (std::size_t c = 0; c < kChannels; ++c) b[i][c] = sub(moments.light(i + 1, c), mul(a[kSlopes][i], mean[c]));
-  }
-  a[kSlopes][kSlopes] = total;
-  Windows inverses[kSlopes];
-  for (std::size_t p = 0; p < kSlopes; ++p) {
-    // Positive by the ridge, unless every sample sits at the origin.
-    inverses[p] = inverse(a[p][p]);
-    for (std::size_t i = p + 1; i < kUnknowns; ++i) {
-      const Windows factor = mul(a[i][p], inverses[p]);
-      for (std::size_t j = p + 1; j <= i; ++j) a[i][j] = sub(a[i][j], mul(factor, a[j][p]));
-      for (std::size_t c = 0; c < kChannels; ++c) b[i][c] = sub(b[i][c], mul(factor, b[p][c]));
+  /// Of the first members of shell_.
+  template <std::size_t kRow>
+  HWY_INLINE void add_row(const Stencil::Shell& shell, std::size_t count) {
+    constexpr std::size_t kSums = kUnknowns - kRow + kChannels;
+    F sums[kSums];
+    ISOLUX_UNROLL
+    for (std::size_t j = 0; j < kSums; ++j) sums[j] = hn::Zero(kF);
+    for (std::size_t n = 0; n < count; ++n) {
+      const auto& member = shell_[n];
+      auto w = hn::Load(kF, member[kWeight]);
+      if constexpr (kRow == 0) {
+        sums[0] = hn::Add(sums[0], w);
+      } else {
+        const auto own = hn::Load(kF, member[kRow - 1]);
+        w = hn::Mul(w, own);
+        sums[0] = hn::MulAdd(w, own, sums[0]);
+      }
+      // What follows a row's own coordinate, the light last.
+      ISOLUX_UNROLL
+      for (std::size_t j = 1; j < kSums; ++j) sums[j] = hn::MulAdd(w, hn::Load(kF, member[kRow + j - 1]), sums[j]);
+    }
+    for (std::size_t w = first_window(shell); w < kWindowCount; ++w) {
+      const auto part = share(shell, w);
+      float(*const to)[kRowLanes] = moments_[w] + row_start<kChannels>(kRow);
+      ISOLUX_UNROLL
+      for (std::size_t j = 0; j < kSums; ++j) hn::Store(hn::MulAdd(part, sums[j], hn::Load(kF, to[j])), kF, to[j]);
     }
   }
-  Windows value;
-  Windows sound;  // 1, or 0 where the samples do not tell slopes: the mean is left
-  for (std::size_t p = 0; p < Windows::kParts; ++p) {
-    const typename Windows::Tag d;
-    const auto pivot = a[kSlopes][kSlopes].part[p];
-    const auto tells = hn::Gt(pivot, hn::Mul(total.part[p], hn::Set(d, 1e-6)));
-    sound.part[p] = hn::IfThenElseZero(tells, hn::Set(d, 1.0));
-    value.part[p] = hn::IfThenElse(tells, pivot, total.part[p]);
-  }
-  const Windows follows = inverse(value);
-  store(follows, there);
-  for (std::size_t c = 0; c < kChannels; ++c) store(mul_add(mul(b[kSlopes][c], follows), sound, mean[c]), light[c]);
-  // The matrix's inverse times the value's unit vector, of which elimination has left the last row alone.
-  Windows turned[kSlopes];
-  for (std::size_t p = kSlopes; p-- > 0;) {
-    Windows sum = mul(a[kSlopes][p], follows);
-    for (std::size_t j = p + 1; j < kSlopes; ++j) sum = mul_add(a[j][p], turned[j], sum);
-    turned[p] = mul(sub(all<double, 4>(0.0), mul(sum, inverses[p])), sound);
-    store(turned[p], slopes[p]);
-  }
-}
 
-/// Variance of two windows' lights where independent samples have one of 1: this one's, and of its difference from the
-/// narrowest.
-struct Noise {
-  float own, apart;
+  void solve(std::size_t window, std::size_t lane, const std::array<double, kUnknowns>& units, double ridge,
+             std::span<WindowFits> fits) {
+    Solution<kChannels, kSolvedLanes> solution;
+    solution.solve(Sums{.moments = moments_[window], .lane = lane, .units = units}, ridge);
+    for (std::size_t n = 0; n < kSolvedLanes; ++n) {
+      there_[window][lane + n] = float(solution.there[n]);
+      for (std::size_t a = 0; a < kCoordinates; ++a)
+        slopes_[window][a][lane + n] = float(solution.slopes[a][n] * units[a + 1]);
+      if (lane + n >= fits.size()) continue;
+      WindowFits& fit = fits[lane + n];
+      if (window == 0) fit.follows = float(std::min(1.0, solution.there[n]));
+      for (std::size_t c = 0; c < kChannels; ++c)
+        fit.light[window][c] = float(double(samples_.own(LatticeSamples::kLight + c)[lane + n]) + solution.light[c][n]);
+    }
+  }
+
+  /// Variances of the windows' lights, and of their differences from the narrowest's.
+  void measure_noise(const Stencil& stencil, std::span<WindowFits> fits) {
+    F own[kWindowCount];
+    F apart[kWindowCount];
+    for (std::size_t w = 0; w < kWindowCount; ++w) own[w] = apart[w] = hn::Zero(kF);
+    std::size_t m = 0;
+    for (std::size_t s = 0; s < shells_; ++s) {
+      const Stencil::Shell& shell = stencil.shells[s];
+      const std::size_t first = first_window(shell);
+      F shares[kWindowCount];
+      for (std::size_t w = 0; w < kWindowCount; ++w) shares[w] = share(shell, w);
+      for (; m < shell.end; ++m) {
+        F at[kCoordinates];
+        ISOLUX_UNROLL
+        for (std::size_t a = 0; a < kCoordinates; ++a) at[a] = samples_.coordinate(stencil.members[m], a);
+        const auto like = hn::Load(kF, likeness_[m]);
+        auto narrowest = hn::Zero(kF);
+        ISOLUX_UNROLL
+        for (std::size_t w = 0; w < kWindowCount; ++w) {
+          if (w < first) continue;
+          auto part = hn::Load(kF, there_[w]);
+          ISOLUX_UNROLL
+          for (std::size_t a = 0; a < kCoordinates; ++a) part = hn::MulAdd(hn::Load(kF, slopes_[w][a]), at[a], part);
+          part = hn::Mul(part, hn::Mul(like, shares[w]));
+          if (w == 0) narrowest = part;
+          own[w] = hn::MulAdd(part, part, own[w]);
+          const auto more = hn::Sub(part, narrowest);
+          apart[w] = hn::MulAdd(more, more, apart[w]);
+        }
+      }
+    }
+    HWY_ALIGN std::array<float, kRowLanes> lanes;
+    for (std::size_t w = 0; w < kWindowCount; ++w) {
+      hn::Store(own[w], kF, lanes.data());
+      for (std::size_t n = 0; n < fits.size(); ++n) fits[n].noise[w] = lanes[n];
+      hn::Store(apart[w], kF, lanes.data());
+      for (std::size_t n = 0; n < fits.size(); ++n) fits[n].noise_apart[w] = lanes[n];
+    }
+  }
+
+  RowSamples<kChannels> samples_;
+  HWY_ALIGN float variance_[kRowLanes];  ///< the largest in the widest window
+  HWY_ALIGN float far_[kWindowCount][kRowLanes];  ///< how far windows reach
+  std::size_t shells_ = 0;                        ///< that any window reaches
+  HWY_ALIGN float likeness_[Stencil::kMostMembers][kRowLanes];
+  HWY_ALIGN float shell_[Stencil::kLargestShell][kWeight + 1][kRowLanes];  ///< coordinates, light and likeness
+  HWY_ALIGN float moments_[kWindowCount][kMoments][kRowLanes];
+  HWY_ALIGN float there_[kWindowCount][kRowLanes];
+  HWY_ALIGN float slopes_[kWindowCount][kCoordinates][kRowLanes];
 };
 
 template <std::size_t kChannels>
-HWY_INLINE Noise noise_of(Members<kChannels>& members, std::size_t padded, const Solution<kChannels>& solution,
-                          std::size_t window) {
-  F slopes[kCoordinates];
-  ISOLUX_UNROLL
-  for (std::size_t a = 0; a < kCoordinates; ++a) slopes[a] = hn::Set(kF, float(solution.slopes[a][window]));
-  const auto there = hn::Set(kF, float(solution.there[window]));
-  auto own = hn::Zero(kF);
-  auto apart = hn::Zero(kF);
-  for (std::size_t n = 0; n < padded; n += hn::Lanes(kF)) {
-    auto part = there;
-    ISOLUX_UNROLL
-    for (std::size_t a = 0; a < kCoordinates; ++a)
-      part = hn::MulAdd(slopes[a], hn::Load(kF, members.numbers[a] + n), part);
-    part = hn::Mul(part, hn::Load(kF, members.weights[window] + n));
-    if (window == 0) hn::Store(part, kF, members.narrowest + n);
-    own = hn::MulAdd(part, part, own);
-    const auto more = hn::Sub(part, hn::Load(kF, members.narrowest + n));
-    apart = hn::MulAdd(more, more, apart);
-  }
-  return {hn::GetLane(hn::SumOfLanes(kF, own)), hn::GetLane(hn::SumOfLanes(kF, apart))};
-}
-
-template <std::size_t kChannels>
-bool fit(const BinnedSamples& all, std::size_t sample, const NearSamples& near, const WindowLimits& limits,
-         WindowFits& fits) {
-  static thread_local Members<kChannels> members;
-  members.copy(all, sample, near, limits.counts.back());
-  const float* const variances = members.numbers[BinnedSamples::kVariance];
-  if (std::all_of(variances, variances + members.count, [&](float v) { return v <= limits.unseen; })) return false;
-  const float variance = members.measure(sample, all, limits);
-  tell_sides(members, limits.apart * limits.apart * variance + float(kNoError));
-
-  static thread_local Moments<kChannels> moments;  // the lane to spare stays 0
-  std::array<std::size_t, kWindowCount> padded;
-  for (std::size_t w = 0; w < kWindowCount; ++w) {
-    padded[w] = weigh(members, w, std::min(limits.counts[w], members.count));
-    moments.add(members, padded[w], w, std::make_index_sequence<kUnknowns>());
-  }
-  std::fill_n(members.narrowest, members.padded, 0.0f);
-  Solution<kChannels> solution;
-  solution.solve(moments, double(limits.ridge));
-  const float* const own = &all.looks[sample * members.kNumbers + BinnedSamples::kLight];
-  for (std::size_t w = 0; w < kWindowCount; ++w) {
-    for (std::size_t c = 0; c < kChannels; ++c) fits.light[w][c] = float(double(own[c]) + solution.light[c][w]);
-    const Noise noise = noise_of(members, padded[w], solution, w);
-    fits.noise[w] = noise.own;
-    fits.noise_apart[w] = noise.apart;
-  }
-  fits.follows = float(std::min(1.0, solution.there[0]));
-  return true;
+void fit_row(const LatticeSamples& all, const std::array<int, 3>& point, const WindowLimits& limits,
+             std::span<WindowFits> fits) {
+  static thread_local RowWindows<kChannels> windows;
+  windows.fit(all, point, limits, fits);
 }
 
 }  // namespace HWY_NAMESPACE

@@ -1,0 +1,43 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace isolux::wide {
+
+/// The points of a lattice around one, nearest first.
+struct Stencil {
+  /// Points along x, so many to either side of the one in the middle.
+  struct Row {
+    int y;
+    int z;
+    int reach;
+  };
+  struct Member {
+    std::array<int, 3> step;
+    std::array<float, 3> place;  ///< relative to the middle
+    std::size_t row;
+    std::size_t along;  ///< from where its row begins
+  };
+  /// Members nearly as far away as each other: within a sixteenth of an octave of the squared distance.
+  struct Shell {
+    std::size_t end;   ///< one past the last of them
+    std::size_t rows;  ///< so many of the first rows hold them and those before
+    float distance;    ///< their mean
+  };
+  static constexpr int kLongestReach = 8;
+  static constexpr std::size_t kMostRows = 160;
+  static constexpr std::size_t kMostMembers = 515;  ///< where steps are the same, so many are within five of them
+  static constexpr std::size_t kLargestShell = 48;
+
+  std::vector<Row> rows;
+  std::vector<Member> members;
+  std::vector<Shell> shells;
+
+  /// For steps so long along the axes.
+  static Stencil of(const std::array<double, 3>& steps);
+};
+
+}  // namespace isolux::wide

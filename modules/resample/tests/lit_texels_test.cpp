@@ -1,0 +1,54 @@
+#include "lit_texels.h"
+
+#include <gtest/gtest.h>
+#include <isolux/core/error.h>
+
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+#include "texel_looks.h"
+
+namespace isolux {
+namespace {
+
+constexpr auto kNone = std::numeric_limits<std::uint32_t>::max();
+
+Sites sites_at_places(std::vector<Vec3f> positions) {
+  Sites sites;
+  sites.isovalues.resize(positions.size());
+  sites.normals.resize(positions.size());
+  sites.positions = std::move(positions);
+  return sites;
+}
+
+TEST(LitTexels, AreInTheOrderOfMemoryWhateverTheSitesAre) {
+  const Lattice volume{.size = {4, 3, 3}, .frame = {}};
+  const Lattice texels = cell_lattice(volume);
+  const Sites sites = sites_at_places({{2.5f, 0.5f, 1.5f}, {0.5f, 1.5f, 0.5f}, {2.5f, 0.5f, 1.5f}, {1.5f, 0.5f, 0.5f}});
+  const LitTexels lit(volume, sites, texels, {});
+  EXPECT_EQ(lit.sites, (std::vector<std::uint32_t>{3, 1, 0}));
+  EXPECT_EQ(lit.of_site, (std::vector<std::uint32_t>{2, 1, 2, 0}));
+  EXPECT_EQ(lit.at, (std::vector<std::uint32_t>{kNone, 0, kNone, 1, kNone, kNone, kNone, kNone, 2, kNone, kNone, kNone}));
+}
+
+TEST(LitTexels, RefuseSitesBetweenThem) {
+  const Lattice volume{.size = {4, 3, 3}, .frame = {}};
+  EXPECT_THROW(LitTexels(volume, sites_at_places({{2.5f, 0.5f, 1.0f}}), cell_lattice(volume), {}), InvalidInput);
+}
+
+TEST(TakeLight, TakesTheMeanOfSeveralSamples) {
+  const Lattice volume{.size = {3, 2, 2}, .frame = {}};
+  const Sites sites = sites_at_places({{1.5f, 0.5f, 0.5f}, {0.5f, 0.5f, 0.5f}, {1.5f, 0.5f, 0.5f}});
+  const LitTexels lit(volume, sites, cell_lattice(volume), {});
+  wide::LatticeSamples all;
+  all.looks.resize(2 * wide::LatticeSamples::stride(1));
+  take_light({0.25f, 1.0f, 0.75f}, {0.5f, 0.125f, 0.25f}, lit, 2.0f, all);
+  EXPECT_EQ(all.look(0)[wide::LatticeSamples::kLight], 2.0f);
+  EXPECT_EQ(all.look(0)[wide::LatticeSamples::kVariance], 0.5f);
+  EXPECT_EQ(all.look(1)[wide::LatticeSamples::kLight], 1.0f);
+  EXPECT_EQ(all.look(1)[wide::LatticeSamples::kVariance], 0.75f);
+}
+
+}  // namespace
+}  // namespace isolux
