@@ -17,16 +17,16 @@ struct DenoisedLight {
 };
 
 /// The samples' light with their rays' noise taken out where the samples around say that it is noise. Linear functions
-/// of place, isovalue, normal and the volume's own openness are fitted to the nearest samples of like normals, for
+/// of place, isovalue, normal and the volume's own openness are fitted to the nearest texels of like normals, for
 /// windows of several widths (Moon, Carr & Yoon, "Adaptive rendering based on weighted local regression", TOG 2014).
 /// Each one's mean squared error is estimated from what it leaves (Stein, "Estimation of the mean of a multivariate
 /// normal distribution", 1981), the noise being the part of that which neighbours do not share; the better share more
 /// in the result, and the samples themselves are one of the choices, their noise counted as far as reading leaves it.
 /// Samples of two sides of an edge are not fitted together: shadow edges and thin walls stay. Lamps' light told apart
 /// (SampleSet::lamps) and the rest are denoised each on its own: where a lamp's light is known, it stays what it is,
-/// edges included, and does not part the windows of the rest. The same bits for any number of threads. Fastest where
-/// samples lie at the `texels`' centres. Cost: 5 to 10 microseconds of a thread a sample whose neighbours are noisy, a
-/// tenth of that where they are not; 140 bytes. \throw InvalidInput as resample() does; Cancelled
+/// edges included, and does not part the windows of the rest. The same bits for any number of threads. Cost: one to two
+/// microseconds of a thread a texel whose neighbours are noisy, a tenth of that where they are not; 130 bytes and four
+/// more a texel of the lattice. \throw InvalidInput for samples that are not at the centres of `texels`; Cancelled
 [[nodiscard]] DenoisedLight denoised_light(const Volume& volume, const SampleSet& samples, const Lattice& texels,
                                            const Run& run);
 
