@@ -16,4 +16,9 @@ inline void prefetch(const Sites& sites, std::size_t site) {
   hwy::Prefetch(&sites.normals[site]);
 }
 
+inline void prefetch_light(const SampleSet& samples, std::size_t site) {
+  hwy::Prefetch(&samples.radiance[site * std::size_t(samples.channels)]);
+  hwy::Prefetch(&samples.variance[site]);
+}
+
 }  // namespace isolux

@@ -8,6 +8,7 @@
 
 #include "environment.h"
 #include "link_rounds.h"
+#include "prefetch_sites.h"
 #include "ray_values.h"
 #include "wide/net_mean.h"
 
@@ -46,6 +47,7 @@ TraceCounters add_sky_light(const Volume& volume, const Scene& scene, const Trac
     block.begins.assign(gathered.sites.size() + 1, 0);
     for (std::size_t place = 0; place < gathered.sites.size(); ++place) {
       const std::uint32_t site = gathered.sites[place];
+      if (place + kSitesAhead < gathered.sites.size()) prefetch_light(samples, gathered.sites[place + kSitesAhead]);
       if (samples.sites.normals[site] == Vec3f(0.0f)) continue;
       const float isovalue = samples.sites.isovalues[site];
       mark_hits(gathered, place, round, block);
