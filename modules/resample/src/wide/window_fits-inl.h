@@ -74,7 +74,7 @@ class RowWindows {
   };
 
   /// Copies shells, nearest first, until every sample's widest window is full, and says how alike members are in light,
-  /// by normals and by light: 0 of those that are not there or not in the widest window.
+  /// by normals and by light itself: 0 of those that are not there or not in the widest window.
   void compare(const LatticeSamples& all, const std::array<int, 3>& point, const WindowLimits& limits) {
     const Stencil& stencil = all.stencil;
     samples_.copy(all, point, 0);
@@ -117,16 +117,21 @@ class RowWindows {
     hn::Store(largest, kF, variance_);
     for (std::size_t w = 0; w < kWindowCount; ++w) hn::Store(far[w], kF, far_[w]);
     const auto mean = hn::Div(variances, hn::Max(likenesses, hn::Set(kF, 1e-6f)));
-    const auto apart = hn::MulAdd(mean, hn::Set(kF, limits.apart * limits.apart), hn::Set(kF, float(kNoError)));
-    const auto scale = hn::Div(hn::Set(kF, 1.0f / float(kChannels)), apart);
-    for (std::size_t n = 0; n < m; ++n) {
-      auto squares = none;
+    tell_sides(stencil, m, hn::Mul(mean, hn::Set(kF, limits.apart * limits.apart)));
+  }
+
+  /// Members whose light is apart by much more than that, squared, are no longer alike: steps of light so end a window
+  /// that place and normals do not.
+  void tell_sides(const Stencil& stencil, std::size_t members, F apart) {
+    const auto scale = hn::Div(hn::Set(kF, 1.0f / float(kChannels)), hn::Add(apart, hn::Set(kF, float(kNoError))));
+    for (std::size_t m = 0; m < members; ++m) {
+      auto squares = hn::Zero(kF);
       for (std::size_t c = 0; c < kChannels; ++c) {
-        const auto less = samples_.relative(stencil.members[n], LatticeSamples::kLight + c);
+        const auto less = samples_.relative(stencil.members[m], LatticeSamples::kLight + c);
         squares = hn::MulAdd(less, less, squares);
       }
       const auto side = same_side(hn::Mul(squares, scale));
-      hn::Store(hn::Mul(hn::Load(kF, likeness_[n]), side), kF, likeness_[n]);
+      hn::Store(hn::Mul(hn::Load(kF, likeness_[m]), side), kF, likeness_[m]);
     }
   }
 
