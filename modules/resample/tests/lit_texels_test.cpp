@@ -29,7 +29,8 @@ TEST(LitTexels, AreInTheOrderOfMemoryWhateverTheSitesAre) {
   const LitTexels lit(volume, sites, texels, {});
   EXPECT_EQ(lit.sites, (std::vector<std::uint32_t>{3, 1, 0}));
   EXPECT_EQ(lit.of_site, (std::vector<std::uint32_t>{2, 1, 2, 0}));
-  EXPECT_EQ(lit.at, (std::vector<std::uint32_t>{kNone, 0, kNone, 1, kNone, kNone, kNone, kNone, 2, kNone, kNone, kNone}));
+  EXPECT_EQ(lit.at,
+            (std::vector<std::uint32_t>{kNone, 0, kNone, 1, kNone, kNone, kNone, kNone, 2, kNone, kNone, kNone}));
 }
 
 TEST(LitTexels, RefuseSitesBetweenThem) {

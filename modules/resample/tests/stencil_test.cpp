@@ -53,15 +53,15 @@ TEST(Stencil, IsABallOfWholeShells) {
   EXPECT_EQ(stencil.rows.size(), 81u);
   EXPECT_FLOAT_EQ(stencil.shells.back().distance, 5.0f);
   for (const std::size_t whole : {1u, 7u, 19u, 27u, 33u, 57u, 123u, 203u}) {
-    EXPECT_TRUE(std::any_of(stencil.shells.begin(), stencil.shells.end(),
-                            [&](const Stencil::Shell& shell) { return shell.end == whole; }))
-        << whole;
+    EXPECT_TRUE(std::any_of(stencil.shells.begin(), stencil.shells.end(), [&](const Stencil::Shell& shell) {
+      return shell.end == whole;
+    })) << whole;
   }
 }
 
 TEST(Stencil, HoldsTheNearestPoints) {
-  for (const std::array<double, 3>& steps : {std::array{1.0, 1.0, 3.0}, std::array{2.1, 1.0, 1.0},
-                                             std::array{0.8, 1.1, 1.3}, std::array{1.0, 4.0, 1.0}}) {
+  for (const std::array<double, 3>& steps :
+       {std::array{1.0, 1.0, 3.0}, std::array{2.1, 1.0, 1.0}, std::array{0.8, 1.1, 1.3}, std::array{1.0, 4.0, 1.0}}) {
     const Stencil stencil = Stencil::of(steps);
     expect_sound(stencil, steps);
     std::set<std::array<int, 3>> members;

@@ -31,8 +31,8 @@ std::vector<Point> points_around(const std::array<double, 3>& steps) {
   for (int k = -reach[2]; k <= reach[2]; ++k) {
     for (int j = -reach[1]; j <= reach[1]; ++j) {
       for (int i = -reach[0]; i <= reach[0]; ++i) {
-        const double distance = std::sqrt(std::pow(i * steps[0], 2.0) + std::pow(j * steps[1], 2.0) +
-                                          std::pow(k * steps[2], 2.0));
+        const double distance =
+            std::sqrt(std::pow(i * steps[0], 2.0) + std::pow(j * steps[1], 2.0) + std::pow(k * steps[2], 2.0));
         if (distance <= far) points.push_back({shell_of(distance), {i, j, k}, distance});
       }
     }

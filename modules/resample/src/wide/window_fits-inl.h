@@ -257,7 +257,7 @@ class RowWindows {
   }
 
   RowSamples<kChannels> samples_;
-  HWY_ALIGN float variance_[kRowLanes];  ///< the largest in the widest window
+  HWY_ALIGN float variance_[kRowLanes];           ///< the largest in the widest window
   HWY_ALIGN float far_[kWindowCount][kRowLanes];  ///< how far windows reach
   std::size_t shells_ = 0;                        ///< that any window reaches
   HWY_ALIGN float likeness_[Stencil::kMostMembers][kRowLanes];

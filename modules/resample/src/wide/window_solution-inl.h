@@ -42,8 +42,8 @@ HWY_INLINE Several<double, kLanes> inverse(const Several<double, kLanes>& a) {
   return s;
 }
 
-/// What functions, one a lane, are at the samples that they are about, and how they follow a sample for each unit of its
-/// weight: `there` of one at the origin, and `slopes` for each unit of a coordinate.
+/// What functions, one a lane, are at the samples that they are about, and how they follow a sample for each unit of
+/// its weight: `there` of one at the origin, and `slopes` for each unit of a coordinate.
 template <std::size_t kChannels, std::size_t kLanes>
 struct Solution {
   HWY_ALIGN double light[kChannels][kLanes];  ///< less the sample's own
