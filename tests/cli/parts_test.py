@@ -53,6 +53,17 @@ class Caps(CommandLineTest):
         self.assertIn("--scene has no effect", self.succeed(*render, "--cap", "--mode", "local", "--scene", "picture.json").stderr)
         self.fail(1, *render, "--cap", "--scene", "gone.json", says="gone.json")
 
+    def test_have_the_lights_own_scene_where_its_file_tells_it(self):
+        self.write("own.json", json.dumps({"environment": {"type": "uniform", "radiance": [0.5, 0.5, 0.5]}}))
+        self.write("other.json", json.dumps({"environment": {"type": "uniform", "radiance": [0.9, 0.1, 0.1]}}))
+        self.succeed("bake", GYROID, "-o", "light.nrrd", "--rays", 1, "--bounces", 0, "--scene", "own.json", "--quiet")
+        for command, output in (("render", "i.png"), ("extract", "i.ply")):
+            words = (command, GYROID, "--iso", 0.2, "-o", output, "--light", "light.nrrd", "--cap", "--quiet")
+            self.succeed(*words)
+            without = self.read(output)
+            self.assertIn("--scene has no effect", self.succeed(*words, "--scene", "other.json").stderr)
+            self.assertEqual(self.read(output), without)
+
     def test_close_the_side_that_is_inside(self):
         """All of a box that is inside is a box, for either side; what is outside of it is nothing."""
         for outer, side, full in (("lower", "outer", True), ("lower", "inner", False), ("higher", "outer", False), ("higher", "inner", True)):
@@ -101,6 +112,11 @@ class SmallParts(CommandLineTest):
         for cap, least, shown in (((), counts[0], True), ((), counts[0] + 1, False), (("--cap",), counts[0] + 1, True), (("--cap",), counts[1] + 1, False)):
             self.succeed("render", *bar, "-o", "i.png", "--size", "40x30", "--background", "0,0,0", "--min-component", least, *cap)
             self.assertEqual(any(pixel != (0, 0, 0) for row in png(self.path("i.png")) for pixel in row), shown, (cap, least))
+
+    def test_are_said_to_be_all_too_small(self):
+        said = self.succeed("render", "gen:sphere:8", "--iso=-0.3", "-o", "i.png", "--min-component", 100000, *FRONT).stderr
+        self.assertIn("no connected part has 100000 triangles", said)
+        self.assertEqual(self.succeed("render", "gen:sphere:8", "--iso=-0.3", "-o", "i.png", "--min-component", 10, *FRONT).stderr, "")
 
     def test_may_differ_from_isovalue_to_isovalue(self):
         self.write("all_16x16x16_uint8.raw", boxes((1, 2), (5, 12)))

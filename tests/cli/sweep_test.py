@@ -54,6 +54,18 @@ class Sweeps(CommandLineTest):
         said = [(surface["output"], surface["settings"]["isovalue"]) for surface in self.report("all.json")["surfaces"]]
         self.assertEqual(said, [("m-1sigma.stl", 3), ("m0sigma.stl", 5), ("m1sigma.stl", 7), ("m4.5.stl", 4.5)])
 
+    def test_may_be_of_one(self):
+        """As in a script that counts; a plain isovalue leaves names as they are."""
+        for isovalues in ("-0.3:-0.3:1", "-0.3:5:1"):
+            self.succeed("extract", SPHERE, f"--iso={isovalues}", "-o", "m%02d.stl", "--quiet")
+            self.succeed("extract", SPHERE, "--iso=-0.3", "-o", "p%02d.stl", "--quiet")
+            self.assertEqual(self.read("m00.stl"), self.read("p%02d.stl"))
+        self.succeed("extract", SPHERE, "--iso=-0.3:5:1", "-o", "m.stl", "--quiet")
+        self.assertEqual(self.read("m00.stl"), self.read("m.stl"))
+
+    def test_are_limited(self):
+        self.fail(2, "extract", SPHERE, "--iso=0:1:60000,0:1:60000", "-o", "m%d.stl", says="100000 isovalues at most")
+
     def test_are_warned_of_in_one_line(self):
         self.succeed("bake", SPHERE, "-o", "light.nrrd", "--rays", 1, "--iso-range=-0.4:-0.3", "--quiet")
         for command, end in (("render", "png"), ("extract", "ply")):
@@ -75,7 +87,7 @@ class Sweeps(CommandLineTest):
             for isovalues, name, says in (("1,2", "f", "need a placeholder"), ("1:2:3", "f%d-{iso}", "one placeholder"), ("1,2", "f%20d", "need a placeholder"),
                                           ("1,2,1.0", "f{iso}", "isovalues number 0 and 2")):
                 self.fail(2, command, "gone.nrrd", "--iso", isovalues, "-o", f"{name}.{end}", says=(f"'{name}.{end}'", says))
-            for isovalues in ("1:2", "1:2:1", "1:2:3:4", "1:2sigma:3", "1,,2", ",1", "1,nan", "1:2:3.5", ":2:3"):
+            for isovalues in ("1:2", "1:2:0", "1:2:3:4", "1:2sigma:3", "1,,2", ",1", "1,nan", "1:2:3.5", ":2:3"):
                 self.fail(2, command, "gone.nrrd", "--iso", isovalues, "-o", f"f%d.{end}", says="--iso")
         # Of one isovalue the name is the name.
         self.succeed("render", SPHERE, "--iso", -0.3, "-o", "f%20d%d{iso}.png", *SMALL)

@@ -40,8 +40,8 @@ void warn_of_no_surface(const VolumeView& volume, std::span<const ExtractSetting
 }
 
 Scene scene_of_cap(const LightFile& baked, const TraceOptions& given, const Session& session) {
-  if (given.scene_given()) return given.scene();
   if (const auto scene = light_scene(baked)) return *scene;
+  if (given.scene_given()) return given.scene();
   session.warn(
       "--cap: the light does not tell its whole scene, so the cap is lit by a white sky; give it with --scene");
   return {};

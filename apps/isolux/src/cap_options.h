@@ -26,8 +26,8 @@ struct CapOptions {
 /// Says so where no voxel is on one side of an isovalue: there is no surface, unless a cap closes the whole box.
 void warn_of_no_surface(const VolumeView& volume, std::span<const ExtractSettings> surfaces, const Session& session);
 
-/// Whose light a cap beside baked light is in: the scene that is given, else the light's, else, with a warning, a white
-/// sky. \throw as TraceOptions::scene()
+/// Whose light a cap beside baked light is in: the light's own, else, where its file does not tell all of it, the scene
+/// that is given, else, with a warning, a white sky. \throw as TraceOptions::scene()
 [[nodiscard]] Scene scene_of_cap(const LightFile& baked, const TraceOptions& given, const Session& session);
 
 }  // namespace isolux

@@ -1,3 +1,4 @@
+#include <fmt/format.h>
 #include <isolux/bake/light_metadata.h>
 #include <isolux/mc_extract/iso_extractor.h>
 #include <isolux/mc_extract/left_out_components.h>
@@ -108,6 +109,9 @@ void draw(const Volume& volume, const std::optional<LightFile>& light, const Ren
     std::optional<LeftOutComponents> left_out;
     if (options.parts.min_component > 0) {
       session.timed("extract", [&] { left_out.emplace(*extractor, volume.lattice(), meshes[number], session.run); });
+      if (left_out->leaves_nothing())
+        session.warn(fmt::format("isovalue {}: no connected part has {} triangles, so nothing is shown",
+                                 settings.isovalue, options.parts.min_component));
       settings.left_out = [&left_out](const Vec3& index) { return left_out->contain(index); };
     }
     const Image image = session.timed("render", [&]() -> Image {
@@ -131,11 +135,11 @@ void run_render(const RenderOptions& options, Session& session) {
     throw UsageError("--projection orthographic: --eye looks in perspective; give one of them");
   if (!options.eye.empty()) static_cast<void>(parse_numbers("--eye", options.eye, 3));
   options.require_pictures();
-  options.warn_of_no_effect(session);
   session.report["output"] = options.output;
   const Volume volume = options.volume.read(session);
   std::optional<LightFile> light;
   if (options.light.given()) light = options.light.read(volume, session);
+  options.warn_of_no_effect(light, session);
   draw(volume, light, options, session);
 }
 

@@ -17,7 +17,7 @@ namespace isolux {
 namespace {
 
 constexpr std::string_view kSigma = "sigma";
-constexpr std::uint64_t kMostSteps = 100000;
+constexpr std::uint64_t kMostIsovalues = 100000;
 
 /// As it was told.
 struct ToldIsovalue {
@@ -43,10 +43,10 @@ std::vector<ToldIsovalue> isovalue_steps(const std::string& text) {
   if (first.in_sigmas != last.in_sigmas)
     throw UsageError(fmt::format("'{}': allowed is sigma behind both FIRST and LAST, or behind neither", text));
   std::string count = parts[2];
-  if (!whole_number(2, kMostSteps)(count).empty())
-    throw UsageError(fmt::format("'{}': allowed as COUNT is a whole number from 2 to {}", text, kMostSteps));
+  if (!whole_number(1, kMostIsovalues)(count).empty())
+    throw UsageError(fmt::format("'{}': allowed as COUNT is a whole number from 1 to {}", text, kMostIsovalues));
   std::vector<ToldIsovalue> steps(std::stoul(count), first);
-  for (std::size_t i = 0; i < steps.size(); ++i)
+  for (std::size_t i = 1; i < steps.size(); ++i)
     steps[i].number = std::lerp(first.number, last.number, double(i) / double(steps.size() - 1));
   return steps;
 }
@@ -58,6 +58,8 @@ std::vector<ToldIsovalue> told_isovalues(const std::string& text) {
     const bool is_range = part.find(':') != std::string::npos;
     const auto some = is_range ? isovalue_steps(part) : std::vector<ToldIsovalue>{told_isovalue(part)};
     all.insert(all.end(), some.begin(), some.end());
+    if (all.size() > kMostIsovalues)
+      throw UsageError(fmt::format("'{}': allowed are {} isovalues at most", text, kMostIsovalues));
   }
   return all;
 }
@@ -89,6 +91,8 @@ void IsovalueOption::add_to(CLI::App& command) {
 void IsovalueOption::add_one_to(CLI::App& command, const std::string& help) {
   command.add_option("--iso", text_, help)->type_name("H|Nsigma")->check(check_by(told_isovalue));
 }
+
+bool IsovalueOption::is_list() const { return text_.find_first_of(",:") != std::string::npos; }
 
 std::vector<std::string> IsovalueOption::texts() const {
   std::vector<std::string> texts;

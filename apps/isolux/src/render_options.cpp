@@ -1,6 +1,7 @@
 #include "render_options.h"
 
 #include <fmt/format.h>
+#include <isolux/bake/light_metadata.h>
 #include <isolux/core/error.h>
 
 #include <cctype>
@@ -128,14 +129,17 @@ void RenderOptions::require_pictures() const {
   }
 }
 
-void RenderOptions::warn_of_no_effect(const Session& session) const {
+void RenderOptions::warn_of_no_effect(const std::optional<LightFile>& baked, const Session& session) const {
   const std::string shown = shown_mode();
   light.warn_of_no_effect(session);
   if (exposure && shown != "global" && shown != "both")
     session.warn(fmt::format("--exposure has no effect with --mode {}: it is of global light", shown));
   if (!eye.empty() && frame != "box") session.warn("--frame has no effect with --eye");
-  if (trace.scene_given() && !(parts.cap && (shown == "global" || shown == "both")))
-    session.warn("--scene has no effect without --cap and the light that it is seen in");
+  const bool shows_light_of_cap = parts.cap && (shown == "global" || shown == "both");
+  if (trace.scene_given() && !shows_light_of_cap)
+    session.warn("--scene has no effect but on a cap in global light: with --cap and --light");
+  else if (trace.scene_given() && baked && light_scene(*baked))
+    session.warn("--scene has no effect: the cap is in the light's own scene, which its file tells");
   if (shown == "normal" && light.given() && !side.given()) session.warn("--light has no effect with --mode normal");
 }
 

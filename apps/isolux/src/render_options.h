@@ -52,7 +52,7 @@ struct RenderOptions {
   /// Whether surfaces are extracted, too.
   [[nodiscard]] bool needs_meshes() const { return parts.min_component > 0 || (frame == "surface" && eye.empty()); }
   /// Words that change nothing.
-  void warn_of_no_effect(const Session& session) const;
+  void warn_of_no_effect(const std::optional<LightFile>& baked, const Session& session) const;
   /// What the report says of a picture.
   [[nodiscard]] nlohmann::json settings(float isovalue, OuterSide outside) const;
 };

@@ -20,11 +20,13 @@ std::string filled(const std::smatch& name, std::size_t number, const std::strin
 }  // namespace
 
 std::vector<std::string> output_names(const std::string& output, const IsovalueOption& isovalues) {
+  if (!isovalues.is_list()) return {output};
   const std::vector<std::string> texts = isovalues.texts();
-  if (texts.size() == 1) return {output};
   static const std::regex placeholder(R"(\{iso\}|%(0[1-9])?d)");
   std::smatch first;
-  if (!std::regex_search(output, first, placeholder))
+  const bool has_place = std::regex_search(output, first, placeholder);
+  if (!has_place && texts.size() == 1) return {output};
+  if (!has_place)
     throw UsageError(
         fmt::format("--output = '{}': {} isovalues need a placeholder in it: {}", output, texts.size(), kPlaceholders));
   if (const std::string rest = first.suffix(); std::regex_search(rest, placeholder))

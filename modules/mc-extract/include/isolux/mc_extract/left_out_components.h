@@ -22,6 +22,8 @@ class LeftOutComponents {
   /// Whether a place (index space) on the level set or its cap is left out. Cost: a bit to look up away from what is
   /// left out.
   [[nodiscard]] bool contain(const Vec3& index) const;
+  /// Whether no component is large enough.
+  [[nodiscard]] bool leaves_nothing() const;
 
  private:
   /// A triangle in one of the cells that it touches.
