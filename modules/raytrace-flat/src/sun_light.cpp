@@ -25,7 +25,9 @@ namespace {
 constexpr int kFirst = 4;
 constexpr int kOneOf = 8;  ///< or so large a part of all, if that is more
 constexpr int kMostTimes = 16;
-constexpr double kMissed = 1.0 / 64.0;  ///< of what sees a part, by the squares of its light: so much may be alone
+/// Of what sees a part, by the squares of its light, so much may be alone, times the rays^1.5 that its error falls
+/// with.
+constexpr double kMissed = 0.5;
 
 /// Who asks a sun, and what with so many rays each.
 class SunRays {
@@ -145,7 +147,7 @@ struct FirstLook {
 
 /// Whether sites tell what those close by see, as far as is known from those that saw a part. One more might have been
 /// alone: few sites can agree by chance.
-bool tell_each_other(const FirstLook& look, const Sites& sites, std::span<const std::uint32_t> alone) {
+bool tell_each_other(const FirstLook& look, const Sites& sites, std::span<const std::uint32_t> alone, int rays) {
   const auto square = [&](std::size_t site) {
     const Vec3 light = look.rays.whole(sites.normals[site]);
     return glm::dot(light, light);
@@ -160,7 +162,7 @@ bool tell_each_other(const FirstLook& look, const Sites& sites, std::span<const 
   if (count == 0.0) return false;
   const double missed = std::accumulate(alone.begin(), alone.end(), found / count,
                                         [&](double sum, std::uint32_t site) { return sum + square(site); });
-  return missed <= kMissed * found;
+  return missed * std::pow(double(rays), 1.5) <= kMissed * found;
 }
 
 /// Of each site that is asked.
@@ -177,7 +179,7 @@ int rays_near_edges(const TraceSettings& settings, const FirstLook& look, const 
 /// Who is to be asked how often. Adds to the variance what this may leave out.
 SunQuestions ask_near_edges(const TraceSettings& settings, const FirstLook& look, SampleSet& samples) {
   ShadowEdges edges = find_shadow_edges(samples.sites, look.seen);
-  if (!tell_each_other(look, samples.sites, edges.alone))
+  if (!tell_each_other(look, samples.sites, edges.alone, settings.rays))
     return {.asked = std::vector<bool>(look.seen.size(), true), .rays = settings.rays};
   for (const std::uint32_t site : edges.alone) {
     // As many are not found, which see less than a ray's share of the disc, or all but that.

@@ -44,19 +44,29 @@ struct Findings {
   float variance = 0.0f;
 };
 
+/// Rows along x, or along the longest axis where there are too few texels along that to fill the lanes.
+std::array<int, 3> axes_for(const Index3& texels, std::size_t lanes) {
+  std::array<int, 3> axes{0, 1, 2};
+  if (texels.x >= int(lanes)) return axes;
+  const int longest = texels.y >= texels.z ? 1 : 2;
+  if (texels[longest] > texels.x) std::swap(axes[0], axes[std::size_t(longest)]);
+  return axes;
+}
+
 class Denoiser {
  public:
   Denoiser(const Volume& volume, const Lattice& texels, const SampleSet& samples, const Run& run)
       : channels_(std::size_t(samples.channels)),
         run_(run),
         kernels_(wide::denoise_kernels(channels_)),
-        lit_(volume.lattice(), samples.sites, texels, run) {
-    all_.size = {texels.size.x, texels.size.y, texels.size.z};
-    all_.at = std::move(lit_.at);
-    all_.channels = channels_;
+        axes_(axes_for(texels.size, kernels_.lanes)),
+        lit_(volume.lattice(), samples.sites, texels, axes_, run) {
     const Vec3 spacing = volume.lattice().frame.spacing();
     const Vec3 step = texels.frame.spacing() / std::cbrt(spacing.x * spacing.y * spacing.z);
-    all_.stencil = wide::Stencil::of({step.x, step.y, step.z});
+    for (std::size_t a = 0; a < 3; ++a) all_.size[a] = texels.size[axes_[a]];
+    all_.at = std::move(lit_.at);
+    all_.channels = channels_;
+    all_.stencil = wide::Stencil::of({step[axes_[0]], step[axes_[1]], step[axes_[2]]}, all_.size);
     look_at(volume, samples.sites, lit_.sites, run, all_);
   }
 
@@ -232,6 +242,7 @@ class Denoiser {
   std::size_t channels_;
   const Run& run_;
   wide::DenoiseKernels kernels_;
+  std::array<int, 3> axes_;  ///< of the texels, those of rows first
   LitTexels lit_;
   float unit_ = 1.0f;  ///< a power of two times which the brightest light is some 1 to 2
   LatticeSamples all_;

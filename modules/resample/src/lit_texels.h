@@ -4,6 +4,7 @@
 #include <isolux/core/run.h>
 #include <isolux/core/sample_set.h>
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -14,14 +15,16 @@ namespace isolux {
 /// The texel that was found for a site. \throw InvalidInput, naming it, if there is none
 [[nodiscard]] std::size_t texel_of(const Sites& sites, std::size_t site, const std::optional<std::size_t>& found);
 
-/// The texels that sites are at, in the order of memory.
+/// The texels that sites are at, in the order of a grid whose axes are those of the texels in another order.
 struct LitTexels {
   std::vector<std::uint32_t> at;       ///< of each texel, its number among these, or largest where no site is there
   std::vector<std::uint32_t> of_site;  ///< the number of its texel
   std::vector<std::uint32_t> sites;    ///< the first of each
 
-  /// `volume` is what the sites are in. \throw InvalidInput for sites that are at no texel
-  LitTexels(const Lattice& volume, const Sites& sites, const Lattice& texels, const Run& run);
+  /// `volume` is what the sites are in; the grid's axis a is the texels' axes[a], the first one its rows'. \throw
+  /// InvalidInput for sites that are at no texel
+  LitTexels(const Lattice& volume, const Sites& sites, const Lattice& texels, const std::array<int, 3>& axes,
+            const Run& run);
 };
 
 }  // namespace isolux

@@ -28,7 +28,7 @@ struct Box {
       : steps(apart), random(3, channels) {
     all.size = {21, 9, 8};
     all.channels = channels;
-    all.stencil = wide::Stencil::of(apart);
+    all.stencil = wide::Stencil::of(apart, all.size);
     for (int k = 0; k < all.size[2]; ++k)
       for (int j = 0; j < all.size[1]; ++j)
         for (int i = 0; i < all.size[0]; ++i) put(i, j, k, part);
@@ -138,9 +138,7 @@ void expect_fits_in_doubles(Box& box, std::size_t sample, const WindowFits& fitt
   const double apart = 25.0 * variance / weights + kNoError;
   std::vector<double> narrowest(windows.samples.size(), 0.0);
   for (std::size_t w = 0; w < kWindowCount; ++w) {
-    // Where samples end before a window is full, its last shell is the farthest of all.
-    const bool full = windows.counts[w] >= kLimits.counts[w];
-    const double far = full ? windows.distances[windows.counts[w] - 1] : double(box.all.stencil.shells.back().distance);
+    const double far = windows.distances[windows.counts[w] - 1];
     LocalFit<10> fit;
     std::vector<double> parts;
     std::vector<LocalFit<10>::Coordinates> coordinates;

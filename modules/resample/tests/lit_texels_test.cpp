@@ -26,22 +26,32 @@ TEST(LitTexels, AreInTheOrderOfMemoryWhateverTheSitesAre) {
   const Lattice volume{.size = {4, 3, 3}, .frame = {}};
   const Lattice texels = cell_lattice(volume);
   const Sites sites = sites_at_places({{2.5f, 0.5f, 1.5f}, {0.5f, 1.5f, 0.5f}, {2.5f, 0.5f, 1.5f}, {1.5f, 0.5f, 0.5f}});
-  const LitTexels lit(volume, sites, texels, {});
+  const LitTexels lit(volume, sites, texels, {0, 1, 2}, {});
   EXPECT_EQ(lit.sites, (std::vector<std::uint32_t>{3, 1, 0}));
   EXPECT_EQ(lit.of_site, (std::vector<std::uint32_t>{2, 1, 2, 0}));
   EXPECT_EQ(lit.at,
             (std::vector<std::uint32_t>{kNone, 0, kNone, 1, kNone, kNone, kNone, kNone, 2, kNone, kNone, kNone}));
 }
 
+TEST(LitTexels, MayBeInTheOrderOfOtherAxes) {
+  const Lattice volume{.size = {3, 3, 4}, .frame = {}};
+  const Sites sites = sites_at_places({{1.5f, 0.5f, 2.5f}, {0.5f, 1.5f, 0.5f}, {0.5f, 0.5f, 1.5f}});
+  const LitTexels lit(volume, sites, cell_lattice(volume), {2, 1, 0}, {});
+  EXPECT_EQ(lit.sites, (std::vector<std::uint32_t>{2, 1, 0}));
+  EXPECT_EQ(lit.at,
+            (std::vector<std::uint32_t>{kNone, 0, kNone, 1, kNone, kNone, kNone, kNone, 2, kNone, kNone, kNone}));
+}
+
 TEST(LitTexels, RefuseSitesBetweenThem) {
   const Lattice volume{.size = {4, 3, 3}, .frame = {}};
-  EXPECT_THROW(LitTexels(volume, sites_at_places({{2.5f, 0.5f, 1.0f}}), cell_lattice(volume), {}), InvalidInput);
+  EXPECT_THROW(LitTexels(volume, sites_at_places({{2.5f, 0.5f, 1.0f}}), cell_lattice(volume), {0, 1, 2}, {}),
+               InvalidInput);
 }
 
 TEST(TakeLight, TakesTheMeanOfSeveralSamples) {
   const Lattice volume{.size = {3, 2, 2}, .frame = {}};
   const Sites sites = sites_at_places({{1.5f, 0.5f, 0.5f}, {0.5f, 0.5f, 0.5f}, {1.5f, 0.5f, 0.5f}});
-  const LitTexels lit(volume, sites, cell_lattice(volume), {});
+  const LitTexels lit(volume, sites, cell_lattice(volume), {0, 1, 2}, {});
   wide::LatticeSamples all;
   all.looks.resize(2 * wide::LatticeSamples::stride(1));
   take_light({0.25f, 1.0f, 0.75f}, {0.5f, 0.125f, 0.25f}, lit, 2.0f, all);

@@ -11,6 +11,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <vector>
 
 #include "wide/lattice_samples.h"
 #include "wide/sample_vectors-inl.h"
@@ -25,6 +26,12 @@ inline constexpr std::size_t kRowLanes = hn::MaxLanes(kF);
 template <std::size_t kChannels>
 class RowSamples {
  public:
+  /// For rows of a stencil.
+  void prepare(const Stencil& stencil) {
+    span_ = (kRowLanes + 2 * std::size_t(stencil.reach) + kPad - 1) / kPad * kPad;
+    numbers_.resize(stencil.rows.size() * kNumbers * span_ + kPad);
+  }
+
   /// Copies the samples along a row of the stencil.
   void copy(const LatticeSamples& all, const std::array<int, 3>& point, std::size_t r) {
     static constexpr std::array<float, kNumbers> kNothing = [] {
@@ -45,7 +52,7 @@ class RowSamples {
         from[i] = held ? all.look(samples[x]) : kNothing.data();
       }
       for (std::size_t a = 0; a < kNumbers; a += 4) {
-        take_four(from, &numbers_[r][a][n], kSpan);
+        take_four(from, numbers(r, a) + n, span_);
         for (const float*& f : from) f += 4;
       }
     }
@@ -58,7 +65,7 @@ class RowSamples {
   [[nodiscard]] const float* own(std::size_t a) const { return own_[a]; }
 
   [[nodiscard]] HWY_INLINE F number(const Stencil::Member& member, std::size_t a) const {
-    return hn::LoadU(kF, numbers_[member.row][a] + member.along);
+    return hn::LoadU(kF, numbers(member.row, a) + member.along);
   }
   [[nodiscard]] HWY_INLINE F relative(const Stencil::Member& member, std::size_t a) const {
     return hn::Sub(number(member, a), hn::Load(kF, own_[a]));
@@ -69,9 +76,18 @@ class RowSamples {
 
  private:
   static constexpr std::size_t kNumbers = LatticeSamples::stride(kChannels);
-  static constexpr std::size_t kSpan = (kRowLanes + 2 * std::size_t(Stencil::kLongestReach) + 3) / 4 * 4;
+  static constexpr std::size_t kPad = 16;
 
-  HWY_ALIGN float numbers_[Stencil::kMostRows][kNumbers][kSpan];  ///< of looks, along each of the stencil's rows
+  /// One number of a look, along a row.
+  [[nodiscard]] HWY_INLINE float* numbers(std::size_t row, std::size_t a) {
+    return &numbers_[(row * kNumbers + a) * span_];
+  }
+  [[nodiscard]] HWY_INLINE const float* numbers(std::size_t row, std::size_t a) const {
+    return &numbers_[(row * kNumbers + a) * span_];
+  }
+
+  std::size_t span_ = 0;        ///< of a row
+  std::vector<float> numbers_;  ///< of looks, along each of the stencil's rows
   HWY_ALIGN float own_[kNumbers][kRowLanes];
 };
 

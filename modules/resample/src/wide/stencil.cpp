@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <limits>
 #include <tuple>
 
 namespace isolux::wide {
@@ -15,51 +16,59 @@ struct Point {
 };
 
 int shell_of(double distance) {
-  if (distance == 0.0) return -1024;
+  if (distance == 0.0) return std::numeric_limits<int>::min();
   return int(std::floor(32.0 * std::log2(distance) + 1e-6));
 }
 
-/// More than enough for any stencil, sorted.
-std::vector<Point> points_around(const std::array<double, 3>& steps) {
-  // A ball of twice the members' volume.
-  const double volume = steps[0] * steps[1] * steps[2];
-  const double far = std::max({std::cbrt(0.5 * double(Stencil::kMostMembers) * volume), steps[0], steps[1], steps[2]});
+/// Those within a distance, of a box of so many points.
+std::vector<Point> points_within(double far, const std::array<double, 3>& steps, const std::array<int, 3>& size) {
   std::array<int, 3> reach{};
-  for (std::size_t a = 0; a < 3; ++a)
-    reach[a] = std::min(int(far / steps[a]), a == 0 ? Stencil::kLongestReach : int(Stencil::kMostRows / 2));
+  for (std::size_t a = 0; a < 3; ++a) reach[a] = int(std::min(far / steps[a], double(size[a] - 1)));
   std::vector<Point> points;
   for (int k = -reach[2]; k <= reach[2]; ++k) {
     for (int j = -reach[1]; j <= reach[1]; ++j) {
       for (int i = -reach[0]; i <= reach[0]; ++i) {
-        const double distance =
-            std::sqrt(std::pow(i * steps[0], 2.0) + std::pow(j * steps[1], 2.0) + std::pow(k * steps[2], 2.0));
+        const double distance = std::hypot(i * steps[0], j * steps[1], k * steps[2]);
         if (distance <= far) points.push_back({shell_of(distance), {i, j, k}, distance});
       }
     }
+  }
+  return points;
+}
+
+/// As many as a stencil has, or all; sorted.
+std::vector<Point> points_around(const std::array<double, 3>& steps, const std::array<int, 3>& size) {
+  constexpr double kGrow = 1.25;
+  const double farthest = std::hypot(steps[0] * size[0], steps[1] * size[1], steps[2] * size[2]);
+  double far = *std::min_element(steps.begin(), steps.end());
+  std::vector<Point> points = points_within(far, steps, size);
+  while (points.size() < Stencil::kMostMembers && far < farthest) {
+    far *= kGrow;
+    points = points_within(far, steps, size);
   }
   std::sort(points.begin(), points.end(), [](const Point& a, const Point& b) {
     return std::tie(a.shell, a.distance, a.step[2], a.step[1], a.step[0]) <
            std::tie(b.shell, b.distance, b.step[2], b.step[1], b.step[0]);
   });
+  points.resize(std::min(points.size(), Stencil::kMostMembers));
   return points;
 }
 
 }  // namespace
 
-Stencil Stencil::of(const std::array<double, 3>& steps) {
+Stencil Stencil::of(const std::array<double, 3>& steps, const std::array<int, 3>& size) {
   Stencil stencil;
   int last = 0;
   double distances = 0.0;
   std::size_t begin = 0;
-  for (const Point& point : points_around(steps)) {
-    if (stencil.members.size() == kMostMembers) break;
+  for (const Point& point : points_around(steps, size)) {
     const auto [i, j, k] = point.step;
     const auto at = std::find_if(stencil.rows.begin(), stencil.rows.end(),
                                  [y = j, z = k](const Row& row) { return row.y == y && row.z == z; });
     const auto row = std::size_t(at - stencil.rows.begin());
-    if (row == kMostRows) break;
     if (at == stencil.rows.end()) stencil.rows.push_back({.y = j, .z = k, .reach = 0});
     stencil.rows[row].reach = std::max(stencil.rows[row].reach, std::abs(i));
+    stencil.reach = std::max(stencil.reach, std::abs(i));
     if (stencil.shells.empty() || point.shell != last || stencil.members.size() - begin == kLargestShell) {
       stencil.shells.push_back({});
       begin = stencil.members.size();

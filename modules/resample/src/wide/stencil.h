@@ -27,17 +27,17 @@ struct Stencil {
     std::size_t rows;  ///< so many of the first rows hold them and those before
     float distance;    ///< their mean
   };
-  static constexpr int kLongestReach = 8;
-  static constexpr std::size_t kMostRows = 160;
-  static constexpr std::size_t kMostMembers = 515;  ///< where steps are the same, so many are within five of them
-  static constexpr std::size_t kLargestShell = 48;
+  static constexpr std::size_t kMostMembers = 2109;  ///< where steps are the same, so many are within eight of them
+  static constexpr std::size_t kLargestShell = 96;
 
   std::vector<Row> rows;
   std::vector<Member> members;
   std::vector<Shell> shells;
 
-  /// For steps so long along the axes.
-  static Stencil of(const std::array<double, 3>& steps);
+  int reach = 0;  ///< the longest of the rows'
+
+  /// For steps so long along the axes, in a box of so many points: what is never in it is left out.
+  static Stencil of(const std::array<double, 3>& steps, const std::array<int, 3>& size);
 };
 
 }  // namespace isolux::wide

@@ -12,8 +12,10 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <utility>
+#include <vector>
 
 #include "wide/denoise_kernels.h"
 #include "wide/eight-inl.h"
@@ -77,6 +79,7 @@ class RowWindows {
   /// by normals and by light itself: 0 of those that are not there or not in the widest window.
   void compare(const LatticeSamples& all, const std::array<int, 3>& point, const WindowLimits& limits) {
     const Stencil& stencil = all.stencil;
+    samples_.prepare(stencil);
     samples_.copy(all, point, 0);
     samples_.begin(stencil);
     const auto none = hn::Zero(kF);
@@ -89,15 +92,13 @@ class RowWindows {
     const auto held = hn::Ge(hn::Load(kF, samples_.own(LatticeSamples::kVariance)), none);
     std::size_t rows = 1;
     std::size_t m = 0;
-    for (shells_ = 0; shells_ < stencil.shells.size(); ++shells_) {
+    members_.clear();
+    shell_ends_.clear();
+    for (const Stencil::Shell& shell : stencil.shells) {
       const auto open = hn::And(held, hn::Lt(count, wanted));
       if (hn::AllFalse(kF, open)) break;
-      const Stencil::Shell& shell = stencil.shells[shells_];
       for (; rows < shell.rows; ++rows) samples_.copy(all, point, rows);
-      for (std::size_t w = 0; w < kWindowCount; ++w) {
-        const auto wider = hn::Lt(count, hn::Set(kF, float(limits.counts[w])));
-        far[w] = hn::IfThenElse(wider, hn::Set(kF, shell.distance), far[w]);
-      }
+      const auto before = count;
       for (; m < shell.end; ++m) {
         const Stencil::Member& member = stencil.members[m];
         auto cosine = none;
@@ -106,28 +107,36 @@ class RowWindows {
           cosine = hn::MulAdd(samples_.number(member, a), hn::Load(kF, samples_.own(a)), cosine);
         const auto variance = samples_.number(member, LatticeSamples::kVariance);
         const auto is_there = hn::And(open, hn::Ge(variance, none));
+        if (hn::AllFalse(kF, is_there)) continue;
         const auto like = hn::IfThenElseZero(is_there, like_by(cosine));
-        hn::Store(like, kF, likeness_[m]);
+        hn::Store(like, kF, likeness_[members_.size()]);
+        members_.push_back(&member);
         count = hn::Add(count, hn::IfThenElseZero(is_there, hn::Set(kF, 1.0f)));
         likenesses = hn::Add(likenesses, like);
         variances = hn::MulAdd(like, variance, variances);
         largest = hn::Max(largest, hn::IfThenElseZero(is_there, variance));
       }
+      shell_ends_.push_back(members_.size());
+      const auto more = hn::Gt(count, before);
+      for (std::size_t w = 0; w < kWindowCount; ++w) {
+        const auto reaches = hn::And(more, hn::Lt(before, hn::Set(kF, float(limits.counts[w]))));
+        far[w] = hn::IfThenElse(reaches, hn::Set(kF, shell.distance), far[w]);
+      }
     }
     hn::Store(largest, kF, variance_);
     for (std::size_t w = 0; w < kWindowCount; ++w) hn::Store(far[w], kF, far_[w]);
     const auto mean = hn::Div(variances, hn::Max(likenesses, hn::Set(kF, 1e-6f)));
-    tell_sides(stencil, m, hn::Mul(mean, hn::Set(kF, limits.apart * limits.apart)));
+    tell_sides(hn::Mul(mean, hn::Set(kF, limits.apart * limits.apart)));
   }
 
   /// Members whose light is apart by much more than that, squared, are no longer alike: steps of light so end a window
   /// that place and normals do not.
-  void tell_sides(const Stencil& stencil, std::size_t members, F apart) {
+  void tell_sides(F apart) {
     const auto scale = hn::Div(hn::Set(kF, 1.0f / float(kChannels)), hn::Add(apart, hn::Set(kF, float(kNoError))));
-    for (std::size_t m = 0; m < members; ++m) {
+    for (std::size_t m = 0; m < members_.size(); ++m) {
       auto squares = hn::Zero(kF);
       for (std::size_t c = 0; c < kChannels; ++c) {
-        const auto less = samples_.relative(stencil.members[m], LatticeSamples::kLight + c);
+        const auto less = samples_.relative(*members_[m], LatticeSamples::kLight + c);
         squares = hn::MulAdd(less, less, squares);
       }
       const auto side = same_side(hn::Mul(squares, scale));
@@ -142,10 +151,11 @@ class RowWindows {
     const auto fall = hn::Div(hn::Mul(distance, hn::Set(kF, 0.75f)), hn::Max(far, hn::Set(kF, 1e-6f)));
     return hn::IfThenElseZero(hn::Le(distance, far), hn::Sub(hn::Set(kF, 1.0f), fall));
   }
-  /// The first that any of them are in. \pre the widest
+  /// The first that any of them are in, kWindowCount if there is none.
   [[nodiscard]] HWY_INLINE std::size_t first_window(const Stencil::Shell& shell) const {
     std::size_t window = 0;
-    while (hn::AllFalse(kF, hn::Le(hn::Set(kF, shell.distance), hn::Load(kF, far_[window])))) ++window;
+    const auto distance = hn::Set(kF, shell.distance);
+    while (window < kWindowCount && hn::AllFalse(kF, hn::Le(distance, hn::Load(kF, far_[window])))) ++window;
     return window;
   }
 
@@ -154,17 +164,17 @@ class RowWindows {
     for (auto& window : moments_)
       for (auto& moment : window) hn::Store(hn::Zero(kF), kF, moment);
     std::size_t m = 0;
-    for (std::size_t s = 0; s < shells_; ++s) {
+    for (std::size_t s = 0; s < shell_ends_.size(); ++s) {
       const Stencil::Shell& shell = stencil.shells[s];
       std::size_t count = 0;
-      for (; m < shell.end; ++m, ++count) {
-        const Stencil::Member& member = stencil.members[m];
+      for (; m < shell_ends_[s]; ++m, ++count) {
+        const Stencil::Member& member = *members_[m];
         for (std::size_t a = 0; a < kCoordinates; ++a) hn::Store(samples_.coordinate(member, a), kF, shell_[count][a]);
         for (std::size_t c = 0; c < kChannels; ++c)
           hn::Store(samples_.relative(member, LatticeSamples::kLight + c), kF, shell_[count][kCoordinates + c]);
         hn::Store(hn::Load(kF, likeness_[m]), kF, shell_[count][kWeight]);
       }
-      add_rows(shell, count, std::make_index_sequence<kUnknowns>());
+      if (count > 0) add_rows(shell, count, std::make_index_sequence<kUnknowns>());
     }
   }
   template <std::size_t... kRows>
@@ -222,15 +232,15 @@ class RowWindows {
     F apart[kWindowCount];
     for (std::size_t w = 0; w < kWindowCount; ++w) own[w] = apart[w] = hn::Zero(kF);
     std::size_t m = 0;
-    for (std::size_t s = 0; s < shells_; ++s) {
+    for (std::size_t s = 0; s < shell_ends_.size(); ++s) {
       const Stencil::Shell& shell = stencil.shells[s];
       const std::size_t first = first_window(shell);
       F shares[kWindowCount];
       for (std::size_t w = 0; w < kWindowCount; ++w) shares[w] = share(shell, w);
-      for (; m < shell.end; ++m) {
+      for (; m < shell_ends_[s]; ++m) {
         F at[kCoordinates];
         ISOLUX_UNROLL
-        for (std::size_t a = 0; a < kCoordinates; ++a) at[a] = samples_.coordinate(stencil.members[m], a);
+        for (std::size_t a = 0; a < kCoordinates; ++a) at[a] = samples_.coordinate(*members_[m], a);
         const auto like = hn::Load(kF, likeness_[m]);
         auto narrowest = hn::Zero(kF);
         ISOLUX_UNROLL
@@ -259,7 +269,8 @@ class RowWindows {
   RowSamples<kChannels> samples_;
   HWY_ALIGN float variance_[kRowLanes];           ///< the largest in the widest window
   HWY_ALIGN float far_[kWindowCount][kRowLanes];  ///< how far windows reach
-  std::size_t shells_ = 0;                        ///< that any window reaches
+  std::vector<const Stencil::Member*> members_;   ///< that are there in any window, nearest first
+  std::vector<std::size_t> shell_ends_;           ///< of these, for each shell that a window reaches
   HWY_ALIGN float likeness_[Stencil::kMostMembers][kRowLanes];
   HWY_ALIGN float shell_[Stencil::kLargestShell][kWeight + 1][kRowLanes];  ///< coordinates, light and likeness
   HWY_ALIGN float moments_[kWindowCount][kMoments][kRowLanes];
@@ -270,8 +281,8 @@ class RowWindows {
 template <std::size_t kChannels>
 void fit_row(const LatticeSamples& all, const std::array<int, 3>& point, const WindowLimits& limits,
              std::span<WindowFits> fits) {
-  static thread_local RowWindows<kChannels> windows;
-  windows.fit(all, point, limits, fits);
+  static thread_local const auto windows = std::make_unique<RowWindows<kChannels>>();
+  windows->fit(all, point, limits, fits);
 }
 
 }  // namespace HWY_NAMESPACE
