@@ -116,6 +116,9 @@ class SmallParts(CommandLineTest):
     def test_are_said_to_be_all_too_small(self):
         said = self.succeed("render", "gen:sphere:8", "--iso=-0.3", "-o", "i.png", "--min-component", 100000, *FRONT).stderr
         self.assertIn("no connected part has 100000 triangles", said)
+        said = self.succeed("render", "gen:sphere:8", "--iso", 7, "-o", "i.png", "--min-component", 100000, *FRONT).stderr
+        self.assertIn("there is no surface", said)
+        self.assertNotIn("no connected part", said)
         self.assertEqual(self.succeed("render", "gen:sphere:8", "--iso=-0.3", "-o", "i.png", "--min-component", 10, *FRONT).stderr, "")
 
     def test_may_differ_from_isovalue_to_isovalue(self):

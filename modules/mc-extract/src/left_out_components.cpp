@@ -106,7 +106,9 @@ LeftOutComponents::CellRange LeftOutComponents::cells_at(const Vec3& index) cons
           .high = glm::clamp(Index3(glm::floor(index + reach_)), Index3(0), last)};
 }
 
-bool LeftOutComponents::leaves_nothing() const { return std::find(kept_.begin(), kept_.end(), true) == kept_.end(); }
+bool LeftOutComponents::leaves_nothing() const {
+  return !pieces_.empty() && std::find(kept_.begin(), kept_.end(), true) == kept_.end();
+}
 
 bool LeftOutComponents::contain(const Vec3& index) const {
   double nearest = std::numeric_limits<double>::infinity();

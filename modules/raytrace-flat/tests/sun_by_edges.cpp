@@ -91,7 +91,7 @@ TEST(SunByEdges, IsKnownAwayFromThem) {
       if (found.variance[s] > 0.0f) continue;
       ++known;
       const double whole = double(kBrightness) * cosine / std::numbers::pi;
-      EXPECT_NEAR(found.radiance[s], found.radiance[s] > 0.5 * whole ? whole : 0.0, 1e-3 * whole) << diameter;
+      EXPECT_NEAR(found.radiance[s], found.radiance[s] > 0.5 * whole ? whole : 0.0, 1e-6 * whole) << diameter;
     }
     EXPECT_GT(2 * known, facing) << diameter;
   }

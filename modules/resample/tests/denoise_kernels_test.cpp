@@ -168,10 +168,10 @@ void expect_fits_in_doubles(Box& box, std::size_t sample, const WindowFits& fitt
       noise += part * part;
       noise_apart += (part - narrowest[n]) * (part - narrowest[n]);
     }
-    EXPECT_NEAR(double(fitted.noise[w]), noise, 2e-3 * noise) << sample << " " << w;
-    EXPECT_NEAR(double(fitted.noise_apart[w]), noise_apart, 2e-3 * noise) << sample << " " << w;
+    EXPECT_NEAR(double(fitted.noise[w]), noise, 1e-3 * noise) << sample << " " << w;
+    EXPECT_NEAR(double(fitted.noise_apart[w]), noise_apart, 1e-3 * noise) << sample << " " << w;
     if (w > 0) continue;
-    EXPECT_NEAR(double(fitted.follows), std::min(1.0, influence.there), 2e-3 * influence.there);
+    EXPECT_NEAR(double(fitted.follows), std::min(1.0, influence.there), 1e-3 * influence.there);
   }
 }
 

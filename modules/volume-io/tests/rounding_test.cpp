@@ -17,6 +17,20 @@ class Rounding : public testing::Test {
     options.subtract = subtract;
     return read_volume(folder_.write(fmt::format("a_{}x1x1_{}.raw", values.size(), type), bytes_of(values)), options);
   }
+  /// Files of each, by what its numbers go through.
+  std::vector<std::string> of_every_format() const {
+    std::string text;
+    for (int i = 0; i < 12; ++i) text += fmt::format("{} ", i);
+    const std::string nrrd = "NRRD0004\ntype: short\ndimension: 3\nsizes: 3 2 2\nendian: little\nencoding: ";
+    return {folder_.write("a.nii", test::nifti_sample()),
+            folder_.write("a.mrc", test::mrc_sample()),
+            folder_.write("a.vtk", test::vtk_header("ASCII") + text),
+            folder_.write("b.vtk", test::vtk_header("BINARY") + bytes_of(test::ramp(), true)),
+            folder_.write("a.nrrd", nrrd + "raw\n\n" + bytes_of(test::ramp())),
+            folder_.write("b.nrrd", nrrd + "gzip\n\n" + test::gzipped(bytes_of(test::ramp()))),
+            folder_.write("c.nrrd", nrrd + "text\n\n" + text),
+            "gen:sphere:3"};
+  }
   test::TemporaryFolder folder_;
 };
 
@@ -60,15 +74,7 @@ TEST_F(Rounding, LosesLessOfWhatAnOffsetIsTakenOff) {
 TEST_F(Rounding, OffsetsAreTakenOffEveryFormat) {
   ReadOptions options;
   options.subtract = 100.0;
-  std::string text;
-  for (int i = 0; i < 12; ++i) text += fmt::format("{} ", i);
-  const std::string nrrd = "NRRD0004\ntype: short\ndimension: 3\nsizes: 3 2 2\nendian: little\nencoding: ";
-  for (const auto& path : {folder_.write("a.nii", test::nifti_sample()), folder_.write("a.mrc", test::mrc_sample()),
-                           folder_.write("a.vtk", test::vtk_header("ASCII") + text),
-                           folder_.write("b.vtk", test::vtk_header("BINARY") + bytes_of(test::ramp(), true)),
-                           folder_.write("a.nrrd", nrrd + "raw\n\n" + bytes_of(test::ramp())),
-                           folder_.write("b.nrrd", nrrd + "gzip\n\n" + test::gzipped(bytes_of(test::ramp()))),
-                           folder_.write("c.nrrd", nrrd + "text\n\n" + text), std::string("gen:sphere:3")}) {
+  for (const std::string& path : of_every_format()) {
     const std::vector<float> plain = test::values_of(read_volume(path));
     const std::vector<float> less = test::values_of(to_floats(read_stored_volume(path, options)));
     ASSERT_EQ(less.size(), plain.size()) << path;
@@ -76,16 +82,8 @@ TEST_F(Rounding, OffsetsAreTakenOffEveryFormat) {
   }
 }
 
-// Of every format, by what its numbers go through.
 TEST_F(Rounding, ValuesForNoneThatNoVoxelHasAreRemarked) {
-  std::string text;
-  for (int i = 0; i < 12; ++i) text += fmt::format("{} ", i);
-  const std::string nrrd = "NRRD0004\ntype: short\ndimension: 3\nsizes: 3 2 2\nendian: little\nencoding: ";
-  for (const auto& path : {folder_.write("a.nii", test::nifti_sample()), folder_.write("a.mrc", test::mrc_sample()),
-                           folder_.write("a.vtk", test::vtk_header("ASCII") + text),
-                           folder_.write("b.vtk", test::vtk_header("BINARY") + bytes_of(test::ramp(), true)),
-                           folder_.write("a.nrrd", nrrd + "raw\n\n" + bytes_of(test::ramp())),
-                           folder_.write("c.nrrd", nrrd + "text\n\n" + text), std::string("gen:sphere:3")}) {
+  for (const std::string& path : of_every_format()) {
     ReadOptions options;
     EXPECT_TRUE(read_volume(path, options).remarks.empty()) << path;
     options.nodata = double(test::values_of(read_volume(path))[5]);

@@ -29,7 +29,6 @@ struct LatticeSamples {
   std::size_t channels = 1;       ///< 1 or 3
   std::vector<float> looks;       ///< one after the other, in whole fours
 
-  [[nodiscard]] std::size_t count() const { return looks.size() / stride(channels); }
   [[nodiscard]] static constexpr std::size_t stride(std::size_t channels) { return (kLight + channels + 3) / 4 * 4; }
   [[nodiscard]] const float* look(std::size_t sample) const { return &looks[sample * stride(channels)]; }
   [[nodiscard]] float* look(std::size_t sample) { return &looks[sample * stride(channels)]; }

@@ -22,7 +22,7 @@ class LeftOutComponents {
   /// Whether a place (index space) on the level set or its cap is left out. Cost: a bit to look up away from what is
   /// left out.
   [[nodiscard]] bool contain(const Vec3& index) const;
-  /// Whether no component is large enough.
+  /// Whether there are components, and none is large enough.
   [[nodiscard]] bool leaves_nothing() const;
 
  private:
