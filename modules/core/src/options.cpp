@@ -49,6 +49,7 @@ std::optional<Number> number_of(std::string_view text) {
 std::string OptionInfo::allowed() const {
   if (type == "choice") return fmt::format("{}", fmt::join(choices, " | "));
   if (type == "bool") return "true | false";
+  if (type == "text") return "any text";
   const std::string kind = type == "int" ? "whole number" : "number";
   if (std::isinf(min) && std::isinf(max)) return "any " + kind;
   if (std::isinf(max)) return fmt::format("a {} of at least {}", kind, number_text(min));
@@ -99,6 +100,11 @@ void OptionVisitor::operator()(std::string_view name, bool& variable, const Opti
     if (*words != "true" && *words != "false") refuse(owner_, option, *words);
     variable = *words == "true";
   }
+}
+
+void OptionVisitor::operator()(std::string_view name, std::string& variable, const OptionNote& text) {
+  note(name, "text", variable, text);
+  if (const std::string* words = given(name)) variable = *words;
 }
 
 std::size_t OptionVisitor::choose(std::string_view name, std::size_t current, const std::vector<std::string>& choices,

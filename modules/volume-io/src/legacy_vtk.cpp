@@ -4,6 +4,7 @@
 #include "format_checks.h"
 #include "number_text.h"
 #include "plain_text.h"
+#include "text_values.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -11,7 +12,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <map>
 #include <optional>
 
@@ -147,38 +147,16 @@ std::string attribute_of(const std::vector<std::string>& words) {
   return at + 1 == words.end() ? excerpt(*at) : excerpt(*at + " " + *(at + 1));
 }
 
-// As binary data, text may have NaN and infinities among floats.
-bool is_number(ScalarType type, const std::string& word) {
-  if (reads_as(type, word)) return true;
-  const auto value = parse_real(word);
-  return (type == ScalarType::kFloat32 || type == ScalarType::kFloat64) && value && !std::isfinite(*value);
-}
-
 VtkValues read_text(const LegacyVtk& header, const ReadOptions& options, const Run& run) {
   const std::uint64_t count = header.lattice.count();
   const std::string& path = header.data.file;
-  NumberText text(path, header.data.offset, " \n\r\t\f\v");
-  AsWanted as_wanted(options, header.data.layout.type == ScalarType::kFloat32);
-  std::vector<float> values;
-  values.reserve(count);
-  bool rounded = false;
-  while (values.size() < count) {
-    const std::string& word = text.next();
-    if (word.empty())
-      throw IoError(fmt::format("{}: {} numbers of data expected, {} found", path, count, values.size()));
-    if (!is_number(header.data.layout.type, word))
-      throw InvalidInput(fmt::format("{}: '{}', value {} of the data, is no {}", path, excerpt(word), values.size(),
-                                     scalar_type_name(header.data.layout.type)));
-    const double value = as_wanted(text.number());
-    values.push_back(float(value));
-    rounded |= double(values.back()) != value && !std::isnan(value);
-    if (values.size() % 65536 == 0) throw_if_stopped(run);
-  }
+  NumberText text(path, header.data.offset, kTextBlanks);
+  DecodedValues values = read_text_values(text, header.data.layout.type, count, options, path, run);
   const std::vector<std::string> behind = words_at(path, text.offset());
   if (!behind.empty() && parse_real(behind.front()))
     throw IoError(
         fmt::format("{}: {} numbers of data expected, more found: '{}'", path, count, excerpt(behind.front())));
-  return {{std::move(values), rounded, as_wanted.found_nodata()}, attribute_of(behind)};
+  return {std::move(values), attribute_of(behind)};
 }
 
 }  // namespace

@@ -22,14 +22,19 @@ std::optional<double> parse_real(std::string_view text) {
   return error == std::errc::result_out_of_range && is_small ? std::optional(0.0) : std::nullopt;
 }
 
-NumberText::NumberText(const std::string& path, std::uint64_t offset, std::string_view separators)
-    : path_(path), file_(path, std::ios::binary), separators_(separators), offset_(offset) {
+NumberText::NumberText(const std::string& path, std::uint64_t offset, std::string_view separators,
+                       std::optional<char> end)
+    : path_(path), file_(path, std::ios::binary), separators_(separators), end_(end), offset_(offset) {
   file_.seekg(std::streamoff(offset));
 }
 
 const std::string& NumberText::next() {
   word_.clear();
   for (int c = file_.get(); c != std::ifstream::traits_type::eof(); c = file_.get()) {
+    if (end_ && char(c) == *end_) {
+      file_.unget();
+      break;
+    }
     ++offset_;
     const bool between = separators_.find(char(c)) != std::string_view::npos;
     if (between && !word_.empty()) break;

@@ -12,10 +12,10 @@ namespace isolux::detail {
 /// or too large.
 [[nodiscard]] std::optional<double> parse_real(std::string_view text);
 
-/// Words of a file with `separators` between them, which outlive this.
+/// Words of a file with `separators` between them, which outlive this, as far as the byte `end`, or all.
 class NumberText {
  public:
-  NumberText(const std::string& path, std::uint64_t offset, std::string_view separators);
+  NumberText(const std::string& path, std::uint64_t offset, std::string_view separators, std::optional<char> end = {});
   /// The next word; empty at the end. \throw IoError for one that is far too long for a number
   const std::string& next();
   /// The last word as a number that float holds, NaN and infinities among them. \throw InvalidInput naming the file,
@@ -28,6 +28,7 @@ class NumberText {
   std::string path_;
   std::ifstream file_;
   std::string_view separators_;
+  std::optional<char> end_;
   std::string word_;
   std::uint64_t words_ = 0;
   std::uint64_t offset_ = 0;

@@ -1,5 +1,6 @@
 #include "samples.h"
 #include "stress.h"
+#include "vti_of_vtk.h"
 
 #include <isolux/core/random.h>
 
@@ -115,6 +116,13 @@ TEST(Fuzz, LegacyVtkHeaders) {
   fuzz("a.vtk", binary + test::bytes_of(test::ramp()), binary.size(), 500 * test::stress());
   const std::string text = test::vtk_header("ASCII") + "0 1 2 3 4 5 6 7 8 9 10 11";
   fuzz("a.vtk", text, text.size(), 250 * test::stress());
+}
+
+TEST(Fuzz, VtkXmlFiles) {
+  if (!test::has_reader("vti")) GTEST_SKIP() << "no pugixml in this build";
+  for (const std::string& file :
+       {test::vti_sample(), test::vti_zlib_sample(), test::vti_raw_sample(), test::kVtkAppendedBase64ZlibWideBigEndian})
+    fuzz("a.vti", file, file.size(), 300 * test::stress());
 }
 
 TEST(Fuzz, FormatsBehindItk) {

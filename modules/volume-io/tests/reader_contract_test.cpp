@@ -32,6 +32,8 @@ std::vector<Sample> samples() {
           {"nifti", "a.nii.gz", test::gzipped(test::nifti_sample()), {}},
           {"itk", "a.mha", test::meta_header("LOCAL") + data, {}},
           {"vtk", "a.vtk", test::vtk_header("BINARY") + data, {}},
+          {"vti", "a.vti", test::vti_zlib_sample(), {}},
+          {"vti", "raw.vti", test::vti_raw_sample(), {}},
           {"itk", "a.tif", test::tiff_sample(0), spaced},
           {"itk", "a.dcm", test::dicom_sample({}), {}}};
 }

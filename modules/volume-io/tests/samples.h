@@ -62,6 +62,47 @@ inline std::string vtk_header(const std::string& encoding) {
          "SCALARS s short 1\nLOOKUP_TABLE default\n";
 }
 
+/// What a test changes of a VTK XML file. Its array is `ramp` as text.
+struct VtiParts {
+  std::string file = R"(type="ImageData" version="1.0" byte_order="LittleEndian")";
+  std::string image = R"(WholeExtent="0 2 0 1 0 1" Origin="10 20 30" Spacing="0.5 2 4")";
+  std::string extent = "0 2 0 1 0 1";
+  std::string section = R"(PointData Scalars="ramp")";
+  std::string array = R"(type="Int16" Name="ramp" format="ascii")";
+  std::string data = "0 1 2 3 4 5 6 7 8 9 10 11";
+  std::string more{};      ///< arrays behind it
+  std::string appended{};  ///< attribute of AppendedData, and what is in them
+};
+inline std::string vti_sample(const VtiParts& parts = {}) {
+  const std::string section = parts.section.substr(0, parts.section.find(' '));
+  return fmt::format(
+      "<VTKFile {}>\n<ImageData {}>\n<Piece Extent=\"{}\">\n<{}>\n<DataArray {}>{}</DataArray>\n{}</{}>\n</Piece>\n"
+      "</ImageData>\n{}</VTKFile>",
+      parts.file, parts.image, parts.extent, parts.section, parts.array, parts.data, parts.more, section,
+      parts.appended.empty() ? "" : fmt::format("<AppendedData encoding={}\n</AppendedData>\n", parts.appended));
+}
+/// Bytes in front of values as VTK XML has them: their size or, in blocks of zlib, the sizes of these.
+struct VtiCode {
+  bool big_endian = false;
+  bool wide = false;
+  std::size_t block = 0;  ///< bytes of a block; 0 without zlib
+  bool base64 = false;
+};
+/// An array's bytes by the definition of VTK XML ("VTK File Formats"), `data` being those of its values.
+std::string vti_coded(const std::string& data, const VtiCode& code);
+/// The sample's ramp in base64, in blocks of 10 bytes.
+inline std::string vti_zlib_sample() {
+  return vti_sample(
+      {.file = R"(type="ImageData" version="0.1" byte_order="LittleEndian" compressor="vtkZLibDataCompressor")",
+       .array = R"(type="Int16" Name="ramp" format="binary")",
+       .data = vti_coded(bytes_of(ramp()), {.block = 10, .base64 = true})});
+}
+inline std::string vti_raw_sample() {
+  return vti_sample({.array = R"(type="Int16" Name="ramp" format="appended" offset="0")",
+                     .data = {},
+                     .appended = "\"raw\">_" + vti_coded(bytes_of(ramp()), {})});
+}
+
 /// One page of 3x2 pixels, little endian, uncompressed, its values from `first` on.
 inline std::string tiff_sample(int first) {
   std::string bytes("II*\0\x08\0\0\0", 8);

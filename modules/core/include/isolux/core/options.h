@@ -25,7 +25,7 @@ struct OptionNote {
 /// One option as `isolux backends`, `--set` help and the viewer's sliders show it.
 struct OptionInfo {
   std::string name;
-  std::string type;  ///< "int", "number", "bool" or "choice"
+  std::string type;  ///< "int", "number", "bool", "text" or "choice"
   std::string default_value;
   double min = 0.0;  ///< of numbers; infinite where open
   double max = 0.0;
@@ -33,7 +33,7 @@ struct OptionInfo {
   std::string unit;
   std::string help;
 
-  /// "1..512", "at least 0", "euclidean | chebyshev", "true | false", "any number".
+  /// "1..512", "at least 0", "euclidean | chebyshev", "true | false", "any text", "any number".
   [[nodiscard]] std::string allowed() const;
 };
 
@@ -47,6 +47,8 @@ class OptionVisitor {
   void operator()(std::string_view name, int& variable, const OptionNote& note);
   void operator()(std::string_view name, double& variable, const OptionNote& note);
   void operator()(std::string_view name, bool& variable, const OptionNote& note);
+  /// Any text, as it is.
+  void operator()(std::string_view name, std::string& variable, const OptionNote& note);
   /// An enumeration and its words.
   template <class Enum>
   requires std::is_enum_v<Enum>
