@@ -89,6 +89,29 @@ class MissingValues(CommandLineTest):
                 self.assertRegex(line, "^isolux: warning: n_2x2x2_int16.raw: .* -999 ")
 
 
+class Arrays(CommandLineTest):
+    """A VTK XML file has several."""
+
+    def setUp(self):
+        super().setUp()
+        arrays = "".join(f'<DataArray type="UInt8" Name="{name}" NumberOfComponents="{parts}" format="ascii">{values}</DataArray>'
+                         for name, parts, values in (("u v", 1, "0 1 2 3 4 5 6 7"), ("p", 1, "9 1 2 3 4 5 6 7"), ("w", 3, "0 " * 24)))
+        self.write("a.vti", '<VTKFile type="ImageData"><ImageData WholeExtent="0 1 0 1 0 1"><Piece Extent="0 1 0 1 0 1"><PointData Scalars="p">'
+                   + arrays + "</PointData></Piece></ImageData></VTKFile>")
+
+    def values(self, *more):
+        told = self.succeed("convert", "a.vti", "o.nrrd", "--quiet", *more).stderr
+        return told, list(nrrd_header(self.path("o.nrrd"))[2])
+
+    def test_are_told_of_and_chosen_by_name(self):
+        told, values = self.values()
+        self.assertRegex(told, r"^isolux: warning: a.vti: the array 'p' is read, not 'u v', 'w' \(3 components\); --set-reader vti.array=NAME .*\n$")
+        self.assertEqual(values, [9, 1, 2, 3, 4, 5, 6, 7])
+        self.assertEqual(self.values("--set-reader", "vti.array=u v"), ("", list(range(8))))
+        for name in ("w", "nobody"):
+            self.fail(1, "convert", "a.vti", "n.nrrd", "--set-reader", f"vti.array={name}", says=("a.vti", name, "'u v', 'p', 'w' (3"))
+
+
 class Names(CommandLineTest):
     def test_of_other_formats_are_no_lights(self):
         for name in ("x.vtk", "light.nii.gz", "light.nhdr"):

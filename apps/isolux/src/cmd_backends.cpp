@@ -23,8 +23,9 @@ void print(const nlohmann::json& stages) {
       put_out(fmt::format("  {:<22} {}{}\n", backend["name"].get<std::string>(), backend["help"].get<std::string>(),
                           backend["default"].get<bool>() ? " (default)" : ""));
       for (const auto& option : backend["options"]) {
+        const auto value = option["default"].get<std::string>();
         put_out(fmt::format("    {:<20} {} [default {}; {}]\n", option["name"].get<std::string>(),
-                            option["help"].get<std::string>(), option["default"].get<std::string>(),
+                            option["help"].get<std::string>(), value.empty() ? "none" : value,
                             option["allowed"].get<std::string>()));
       }
     }

@@ -25,18 +25,20 @@ class Mixer : public Stage {
     double weight = 0.5;
     bool loud = false;
     Flavour flavour = Flavour::kSweet;
+    std::string label = "none";
 
     void describe(OptionVisitor& option) {
       option("count", count, {.min = 1, .max = 10, .unit = "items", .help = "how many"});
       option("weight", weight, {.min = 0, .help = "how heavy"});
       option("loud", loud, {.help = "whether"});
       option("flavour", flavour, {{"sweet", Flavour::kSweet}, {"sour", Flavour::kSour}}, {.help = "which"});
+      option("label", label, {.help = "what it is called"});
     }
   };
   explicit Mixer(const Options& options) : options_(options) {}
   [[nodiscard]] double answer() const override {
     return options_.count + options_.weight + (options_.loud ? 100 : 0) +
-           (options_.flavour == Flavour::kSour ? 1000 : 0);
+           (options_.flavour == Flavour::kSour ? 1000 : 0) + (options_.label == "a = b" ? 5000 : 0);
   }
 
  private:
@@ -67,6 +69,11 @@ TEST(Registry, MakesBackendsWithTheirDefaultsAndSettings) {
   EXPECT_EQ(registry().create()->answer(), -1);
 }
 
+TEST(Registry, TakesAnyTextAsItIs) {
+  EXPECT_EQ(registry().create("mixer", {{"label", "a = b"}})->answer(), 5003.5);
+  EXPECT_EQ(registry().create("mixer", {{"label", "a"}})->answer(), 3.5);
+}
+
 TEST(Registry, TakesNumbersWithASign) {
   EXPECT_EQ(registry().create("mixer", {{"count", "+7"}, {"weight", "+0.25"}})->answer(), 7.25);
   for (const char* text : {"+", "+-7", "++7", " +7"})
@@ -89,11 +96,13 @@ TEST(Registry, RefusesASecondBackendOfOneName) {
 TEST(Registry, ListsOptionsWithRangesAndDefaults) {
   const Registry<Stage> r = registry();
   const BackendInfo& mixer = r.info("mixer");
-  ASSERT_EQ(mixer.options.size(), 4U);
+  ASSERT_EQ(mixer.options.size(), 5U);
   EXPECT_EQ(mixer.options[0].allowed(), "a whole number from 1 to 10");
   EXPECT_EQ(mixer.options[1].allowed(), "a number of at least 0");
   EXPECT_EQ(mixer.options[2].default_value, "false");
   EXPECT_EQ(mixer.options[3].allowed(), "sweet | sour");
+  EXPECT_EQ(mixer.options[4].allowed(), "any text");
+  EXPECT_EQ(mixer.options[4].default_value, "none");
 }
 
 using Bad = std::tuple<std::string, std::string, std::string>;  // key, value, what the message says

@@ -251,14 +251,15 @@ class VtiReader final : public VolumeReader {
 
   [[nodiscard]] StoredVolume read(const std::string& source, const ReadOptions& options,
                                   const Run& run) const override {
-    const VtiFile file(source);
-    const Choice choice = chosen_array(source, file.image().child("Piece"), options_.array);
-    const detail::VtkExtent points = extent(source, file.image(), "WholeExtent");
+    std::optional<VtiFile> file(std::in_place, source);
+    const Choice choice = chosen_array(source, file->image().child("Piece"), options_.array);
+    const detail::VtkExtent points = extent(source, file->image(), "WholeExtent");
     const detail::VtkExtent voxels = choice.array.of_cells() ? detail::cells_of(points) : points;
-    const auto pieces = pieces_of(source, file, choice.array, voxels);
+    const auto pieces = pieces_of(source, *file, choice.array, voxels);
     const ScalarType type = pieces[0].array.layout.type;
     const std::uint64_t count = detail::checked_count(source, voxels.sizes(), bytes_per_scalar(type));
-    const Lattice lattice = lattice_of_image(source, file.image(), points, voxels);
+    const Lattice lattice = lattice_of_image(source, file->image(), points, voxels);
+    file.reset();  // its text may be as large as the values
     auto values = read_pieces(source, pieces, voxels, count, options, run);
     auto volume = detail::make_volume(source, lattice, std::move(values), type, "3D-right-handed", options);
     if (options_.array.empty() && !choice.left_out.empty())
