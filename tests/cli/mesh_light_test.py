@@ -1,5 +1,6 @@
 """What `extract` writes of light: on caps, beyond white, as numbers, and in formats without colours."""
 import json
+import re
 import unittest
 
 from support import CommandLineTest, ply
@@ -55,10 +56,12 @@ class Bright(CommandLineTest):
         """White light of 4 and albedo .8 are 3.2: 1.7 stops too much."""
         for exposure in (), ("--exposure", 2), ("--exposure", 1000):
             done = self.succeed(*self.extract, "-o", "m.ply", *exposure)
-            self.assertRegex(done.stderr, r"isolux: warning: (\d+) of \1 vertices are brighter than white: --exposure -1\.7 would show them")
+            self.assertRegex(done.stderr, r"isolux: warning: isovalue -0\.3: (\d+) of \1 vertices are brighter than white: --exposure -1\.7 would show them")
         done = self.succeed(*self.extract, "-o", "m.ply", "--exposure", -1.7, "--report", "report.json", "--light-values")
         self.assertNotIn("warning", done.stderr)
         self.assertEqual(self.report()["settings"]["exposure"], -1.7)
+        said = self.succeed("extract", "gen:sphere:12", "--iso=-0.2,-0.3", "-o", "m%d.ply", *self.extract[4:]).stderr
+        self.assertEqual(re.findall(r"isovalue (.*): .* are brighter than white", said), ["-0.2", "-0.3"])
         lines, points, _ = ply(self.path("m.ply"))
         self.assertIn("comment exposure=-1.7", lines)
         for p in points:

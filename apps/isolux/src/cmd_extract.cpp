@@ -135,7 +135,7 @@ MeshExtras notes_of(const VolumeView& volume, const VertexLight& light, float is
 
 void write_lit_mesh(const IsoMesh& mesh, const VertexLight& light, const VolumeView& volume, float isovalue,
                     const std::string& output, const ExtractOptions& options, Session& session) {
-  const std::vector<Rgb8> colours = shown_colours(light, options.exposure.value_or(0.0), session);
+  const std::vector<Rgb8> colours = shown_colours(light, isovalue, options.exposure.value_or(0.0), session);
   MeshExtras extras = notes_of(volume, light, isovalue, options);
   std::vector<float> values;
   if (options.light_values && holds_light(output)) values = light_values(light);

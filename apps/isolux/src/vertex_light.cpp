@@ -124,7 +124,7 @@ VertexLight VertexLighter::light(const IsoMesh& mesh, float isovalue) {
   return result;
 }
 
-std::vector<Rgb8> shown_colours(const VertexLight& light, double exposure, const Session& session) {
+std::vector<Rgb8> shown_colours(const VertexLight& light, float isovalue, double exposure, const Session& session) {
   constexpr float kWhite = 1.0f + 0.5f / 112.0f;  // half a code beyond 255, where sRGB has 112 codes a unit
   const auto factor = float(std::exp2(exposure));
   std::vector<Rgb8> colours;
@@ -141,8 +141,8 @@ std::vector<Rgb8> shown_colours(const VertexLight& light, double exposure, const
   }
   if (too_bright > 0) {
     const double enough = std::floor(-10.0 * std::log2(double(brightest))) / 10.0;
-    session.warn(fmt::format("{} of {} vertices are brighter than white: --exposure {:g} would show them", too_bright,
-                             light.e.size(), enough));
+    session.warn(fmt::format("isovalue {}: {} of {} vertices are brighter than white: --exposure {:g} would show them",
+                             isovalue, too_bright, light.e.size(), enough));
   }
   return colours;
 }

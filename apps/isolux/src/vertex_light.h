@@ -55,7 +55,8 @@ class VertexLighter {
 };
 
 /// As a screen shows it, brighter by so many stops. Says how many are brighter than white and what would show them.
-[[nodiscard]] std::vector<Rgb8> shown_colours(const VertexLight& light, double exposure, const Session& session);
+[[nodiscard]] std::vector<Rgb8> shown_colours(const VertexLight& light, float isovalue, double exposure,
+                                              const Session& session);
 
 /// e itself, `channels` numbers a vertex.
 [[nodiscard]] std::vector<float> light_values(const VertexLight& light);
