@@ -162,7 +162,8 @@ void look(const Words& words, viewer::AppSettings settings, Session& session) {
   if (words.light.given()) document.light = words.read_light(document.volume->floats(), isovalue, session);
   warn_outside(isovalue, document, session);
   if (isovalue) settings.viewer.isovalue = double(*isovalue);
-  session.timed("view", [&] { viewer::run_app(std::move(document), settings, session.stages); });
+  session.report["settings"]["isovalue"] =
+      session.timed("view", [&] { return viewer::run_app(std::move(document), settings, session.stages); });
 }
 
 int view(int argc, char** argv, Session& session) {

@@ -24,7 +24,7 @@ class App final : public WindowListener {
         window_(settings.width, settings.height, "isolux", *this),
         viewer_(std::move(document), settings.viewer, stages, Window::wake) {}
 
-  void run() {
+  [[nodiscard]] float run() {
     const std::stop_callback wake(settings_.viewer.run.stop, Window::wake);
     int drawn = 0;
     while (!window_.closing() && !viewer_.quit()) {
@@ -43,6 +43,7 @@ class App final : public WindowListener {
       }
     }
     if (!settings_.screenshot.empty()) save_screenshot();
+    return viewer_.isovalue();
   }
 
   void on_key(int key, int modifiers) override {
@@ -112,8 +113,8 @@ class App final : public WindowListener {
 
 }  // namespace
 
-void run_app(Document document, const AppSettings& settings, const Stages& stages) {
-  App(std::move(document), settings, stages).run();
+float run_app(Document document, const AppSettings& settings, const Stages& stages) {
+  return App(std::move(document), settings, stages).run();
 }
 
 }  // namespace isolux::viewer

@@ -17,7 +17,8 @@ struct AppSettings {
   std::string screenshot;  ///< the surface without slider and text, written before leaving; "" for none
 };
 
-/// Opens the window on the document and stays until it is closed. \throw GlError, IoError, InvalidInput
-void run_app(Document document, const AppSettings& settings, const Stages& stages);
+/// Opens the window on the document and stays until it is closed; the isovalue that it showed last. \throw GlError,
+/// IoError, InvalidInput
+[[nodiscard]] float run_app(Document document, const AppSettings& settings, const Stages& stages);
 
 }  // namespace isolux::viewer

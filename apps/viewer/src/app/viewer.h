@@ -71,6 +71,8 @@ class Viewer {
   /// What a pane is called.
   [[nodiscard]] std::string name_of(const Pane& pane) const;
   [[nodiscard]] bool quit() const { return quit_; }
+  /// The one that was asked for last.
+  [[nodiscard]] float isovalue() const { return float(slider_->value()); }
   /// Whether a picture was asked for; once, and not before its surface is there.
   [[nodiscard]] bool take_screenshot_request();
 
