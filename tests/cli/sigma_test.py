@@ -27,6 +27,15 @@ class Sigma(CommandLineTest):
             self.fail(2, "extract", "v_2x2x2_uint8.raw", "--iso=" + wrong, "-o", "no.ply", says=("--iso", wrong, "a number from -3.4e38"))
         self.fail(2, "extract", "v_2x2x2_uint8.raw", "--iso=3e38sigma", "-o", "no.ply", says=("--iso", "mean of 5"))
 
+    def test_ranges_to_light_may_be_told_so(self):
+        for text, ends in (("-1sigma:0.5sigma", [3, 6]), ("4:1sigma", [4, 7]), ("0.5sigma:6", [6, 6]), ("1sigma:1sigma", [7, 7])):
+            self.succeed("bake", "v_2x2x2_uint8.raw", f"--iso-range={text}", "-o", "l.nrrd", "--rays", 2, "--quiet", "--report", "report.json")
+            self.assertEqual(self.report()["settings"]["iso_range"], ends)
+        for wrong in ("1sigma", "1sigma:sigma", "1sigma:0sigma", "1sigma:2sigma:3", "1 sigma:2sigma"):
+            self.fail(2, "bake", "gone.nrrd", f"--iso-range={wrong}", "-o", "no.nrrd", says=("--iso-range", wrong))
+        self.fail(2, "bake", "v_2x2x2_uint8.raw", "--iso-range=8:1sigma", "-o", "no.nrrd", says="'8:1sigma': LO is above HI (8 and 7)")
+        self.fail(2, "bake", "v_2x2x2_uint8.raw", "--iso-range=0:3e38sigma", "-o", "no.nrrd", says="4-byte float")
+
 
 if __name__ == "__main__":
     unittest.main()

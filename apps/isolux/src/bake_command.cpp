@@ -74,7 +74,8 @@ void require_memory_for(const BakeOptions& options, const BakeSettings& settings
 
 }  // namespace
 
-BakeSettings bake_settings(const BakeOptions& options, const Stages& stages) {
+BakeSettings bake_settings(const BakeOptions& options, const Stages& stages,
+                           const std::optional<ValueMoments>& moments) {
   BakeSettings settings;
   settings.trace = options.trace.settings();
   settings.sampler.name = options.sampler;
@@ -88,7 +89,7 @@ BakeSettings bake_settings(const BakeOptions& options, const Stages& stages) {
   if (!options.texels.empty() && !options.chooses_texels())
     settings.texels = parse_size3("--texels", options.texels, "auto or NXxNYxNZ");
   settings.texels_a_cell = options.texels_a_cell;
-  if (!options.iso_range.empty()) settings.isovalues = parse_range("--iso-range", options.iso_range);
+  if (!options.iso_range.empty()) settings.isovalues = isovalue_range(options.iso_range, moments);
   if (!options.error_grid.empty() && settings.trace.rays < 2 && options.rmse <= 0.0 && options.time <= 0.0)
     throw UsageError("--error-grid: one ray a site tells nothing about its error; allowed is --rays 2 and more");
   settings.texel_sites = options.sites == "need" ? TexelSites::kNeeded : TexelSites::kAll;

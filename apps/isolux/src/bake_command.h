@@ -2,10 +2,12 @@
 
 #include <isolux/bake/bake.h>
 
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "bake_options.h"
+#include "isovalue_option.h"
 #include "volume_options.h"
 
 namespace isolux {
@@ -34,8 +36,9 @@ struct BakeOptions {
   [[nodiscard]] bool chooses_texels() const { return texels == "auto"; }
 };
 
-/// What the words ask for, every backend named. \throw UsageError for words that contradict each other, so that nothing
-/// is read in vain
-[[nodiscard]] BakeSettings bake_settings(const BakeOptions& options, const Stages& stages);
+/// What the words ask for, every backend named. Without a volume, so that nothing is read in vain, an --iso-range in
+/// standard deviations is no more than one. \throw UsageError for words that contradict each other
+[[nodiscard]] BakeSettings bake_settings(const BakeOptions& options, const Stages& stages,
+                                         const std::optional<ValueMoments>& moments = {});
 
 }  // namespace isolux

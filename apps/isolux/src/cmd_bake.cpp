@@ -125,6 +125,8 @@ void run_bake(const BakeOptions& options, Session& session) {
   require_light_name("--error-grid", options.error_grid);
   BakeSettings settings = bake_settings(options, session.stages);
   const Volume volume = options.volume.read(session);
+  if (is_in_sigmas(options.iso_range))
+    settings = bake_settings(options, session.stages, value_moments(volume.values.values()));
   const Scene scene = session.timed("read", [&] { return options.trace.scene(); });
   if (options.chooses_texels()) choose_size(options, volume, scene, settings, session);
   BakeResult result = with_memory_for(wanted(options, volume, settings),
@@ -162,9 +164,10 @@ void add_bake_command(CLI::App& program, Session& session) {
       command.add_option("-o,--output", options->output, "the light to write")->required()->type_name("LIGHT.nrrd"));
   options->trace.add_to(command, session);
   command
-      .add_option(
-          "--iso-range", options->iso_range,
-          "light only these level sets: LO:HI, or H:H for one; with --resampler fit more accurately than all at once")
+      .add_option("--iso-range", options->iso_range,
+                  "light only these level sets: LO:HI, or H:H for one, each a number or standard deviations above the "
+                  "mean, such "
+                  "as 2.5sigma; with --resampler fit more accurately than all at once")
       ->type_name("LO:HI");
   command
       .add_option("--texels", options->texels,

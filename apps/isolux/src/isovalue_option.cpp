@@ -34,6 +34,10 @@ ToldIsovalue told_isovalue(const std::string& text) {
   return {.number = parse_numbers("--iso", number, 1)[0], .in_sigmas = in_sigmas};
 }
 
+float isovalue_of(const ToldIsovalue& told, const ValueMoments& moments) {
+  return float(told.in_sigmas ? moments.mean + told.number * moments.standard_deviation : told.number);
+}
+
 /// "FIRST:LAST:COUNT". \throw UsageError
 std::vector<ToldIsovalue> isovalue_steps(const std::string& text) {
   const auto parts = split(text, ':');
@@ -108,13 +112,38 @@ std::vector<float> IsovalueOption::in(const VolumeView& volume) const {
     moments = std::visit([](const auto& values) { return value_moments(values); }, volume.voxels());
   std::vector<float> isovalues;
   for (const ToldIsovalue& told : all) {
-    isovalues.push_back(float(told.in_sigmas ? moments.mean + told.number * moments.standard_deviation : told.number));
+    isovalues.push_back(isovalue_of(told, moments));
     if (!std::isfinite(isovalues.back()))
       throw UsageError(
           fmt::format("--iso = '{}': of a mean of {:g} and a standard deviation of {:g} floats do not hold it", text_,
                       moments.mean, moments.standard_deviation));
   }
   return isovalues;
+}
+
+bool is_in_sigmas(const std::string& range) { return range.find(kSigma) != std::string::npos; }
+
+ValueRange isovalue_range(const std::string& range, const std::optional<ValueMoments>& moments) {
+  const auto refuse = [&](const std::string& why) {
+    return UsageError(fmt::format("--iso-range = '{}': {}", range, why));
+  };
+  const auto parts = split(range, ':');
+  std::vector<ToldIsovalue> ends;
+  try {
+    for (const std::string& part : parts) ends.push_back(told_isovalue(part));
+  } catch (const UsageError& error) {
+    throw refuse(fmt::format("allowed is LO:HI; {}", error.what()));
+  }
+  if (ends.size() != 2) throw refuse("allowed is LO:HI");
+  const ValueMoments& values = moments.value_or(ValueMoments{.standard_deviation = 1.0});
+  const ValueRange told{isovalue_of(ends[0], values), isovalue_of(ends[1], values)};
+  if (!std::isfinite(told.low) || !std::isfinite(told.high))
+    throw refuse("allowed are numbers that a 4-byte float holds");
+  // Without a volume nobody knows which of a number and of standard deviations is more.
+  if (told.low > told.high && (moments || ends[0].in_sigmas == ends[1].in_sigmas))
+    throw refuse(fmt::format("LO is above HI{}",
+                             is_in_sigmas(range) && moments ? fmt::format(" ({} and {})", told.low, told.high) : ""));
+  return {std::min(told.low, told.high), std::max(told.low, told.high)};
 }
 
 std::string isovalues_lie(std::span<const float> isovalues) {

@@ -3,9 +3,12 @@
 #include <isolux/core/volume.h>
 
 #include <CLI/App.hpp>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
+
+#include "value_moments.h"
 
 namespace isolux {
 
@@ -28,6 +31,13 @@ class IsovalueOption {
  private:
   std::string text_;
 };
+
+/// Whether a LO:HI of --iso-range takes the volume's values to be understood.
+[[nodiscard]] bool is_in_sigmas(const std::string& range);
+
+/// LO:HI of --iso-range, each as --iso tells one, in a volume of these values; of no volume what is told in standard
+/// deviations counts these from 0. \throw UsageError naming what is allowed, also if LO lies above HI
+[[nodiscard]] ValueRange isovalue_range(const std::string& range, const std::optional<ValueMoments>& moments);
 
 /// Of those that something is wrong with, at least one: "isovalue 5 lies", "3 isovalues, 5 to 7, lie".
 [[nodiscard]] std::string isovalues_lie(std::span<const float> isovalues);

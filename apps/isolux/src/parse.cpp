@@ -67,17 +67,6 @@ std::pair<int, int> parse_size2(const std::string& option, const std::string& te
   return {s[0], s[1]};
 }
 
-ValueRange parse_range(const std::string& option, const std::string& text) {
-  const auto parts = split(text, ':');
-  if (parts.size() != 2) throw UsageError(fmt::format("{} = '{}': allowed is LO:HI", option, text));
-  const auto bound = [&](const std::string& part) { return float(number(option, part, text, "is LO:HI")); };
-  const ValueRange range{bound(parts[0]), bound(parts[1])};
-  if (!std::isfinite(range.low) || !std::isfinite(range.high))
-    throw UsageError(fmt::format("{} = '{}': allowed are numbers that a 4-byte float holds", option, text));
-  if (range.low > range.high) throw UsageError(fmt::format("{} = '{}': LO is above HI", option, text));
-  return range;
-}
-
 std::vector<double> parse_numbers(const std::string& option, const std::string& text, std::size_t count) {
   const std::string allowed = count == 1 ? "is a number" : fmt::format("are {} numbers with commas between", count);
   std::vector<double> numbers;

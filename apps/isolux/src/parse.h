@@ -16,8 +16,6 @@ namespace isolux {
 [[nodiscard]] Index3 parse_size3(const std::string& option, const std::string& text, const char* pattern = "NXxNYxNZ");
 /// "800x600"
 [[nodiscard]] std::pair<int, int> parse_size2(const std::string& option, const std::string& text);
-/// "LO:HI", LO <= HI
-[[nodiscard]] ValueRange parse_range(const std::string& option, const std::string& text);
 /// "a,b,c" with `count` finite numbers
 [[nodiscard]] std::vector<double> parse_numbers(const std::string& option, const std::string& text, std::size_t count);
 /// "all" or a whole number of at least 0
