@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 namespace isolux::detail {
 namespace {
@@ -31,6 +32,14 @@ void require_type(const std::string& path, const CheckedHeader& expected, Scalar
                                    scalar_type_name(*expected.type), scalar_type_name(type)));
 }
 
+/// Whether 16 bits with a sign hold all values, but for NaN. DICOM's library gives unsigned numbers of 16 bits that an
+/// intercept shifts below 0 in 32 bits, whatever their values are.
+bool fit_int16(const DecodedValues& values) {
+  const auto fits = [](float x) { return std::isnan(x) || (x >= -32768.0f && x <= 32767.0f && std::floor(x) == x); };
+  const auto* const floats = std::get_if<std::vector<float>>(&values.list);
+  return floats != nullptr && std::all_of(floats->begin(), floats->end(), fits);
+}
+
 }  // namespace
 
 ReceivedVolume receive_volume(ByteSource& received, const std::string& path, const CheckedHeader& expected,
@@ -46,6 +55,7 @@ ReceivedVolume receive_volume(ByteSource& received, const std::string& path, con
   const std::array<std::int64_t, 3> sizes = {size.x, size.y, size.z};
   const std::uint64_t count = checked_count(path, sizes, sizeof(float));
   const std::uint64_t blocks = volume.header.blocks;
+  bool are_int16 = blocks > 0 && volume.header.stored_type == ScalarType::kInt32 && options.subtract == 0.0;
   for (std::uint64_t b = 0; b < blocks; ++b) {
     const auto block = receive_value<SentBlock>(received, path);
     require_type(path, expected, block.type);
@@ -56,6 +66,10 @@ ReceivedVolume receive_volume(ByteSource& received, const std::string& path, con
     Run quiet = run;
     if (blocks > 1) quiet.progress = {};
     auto values = decode_scalars(received, {block.type, false}, in_block, options, path, quiet);
+    are_int16 = are_int16 && fit_int16(values);
+    if (are_int16 && options.form == VoxelForm::kStored && !options.nodata)
+      values.list =
+          std::visit([](const auto& list) { return std::vector<std::int16_t>(list.begin(), list.end()); }, values.list);
     if (b == 0) {
       volume.values = std::move(values);
       std::visit([&](auto& list) { list.reserve(count); }, volume.values.list);
@@ -64,6 +78,7 @@ ReceivedVolume receive_volume(ByteSource& received, const std::string& path, con
     }
     if (blocks > 1 && run.progress) run.progress("read", double(b + 1) / double(blocks));
   }
+  if (are_int16) volume.header.stored_type = ScalarType::kInt16;
   return volume;
 }
 

@@ -25,6 +25,32 @@ TEST_F(Itk, StacksDicomSlicesByPosition) {
   EXPECT_EQ(volume.space, "left-posterior-superior");
 }
 
+// An intercept below 0 makes no wider type of unsigned numbers unless their values need it.
+TEST_F(Itk, KeepsDicomIn16BitsWhereTheyHoldIt) {
+  const auto unsigned_slice = [&](const std::string& z, int first) {
+    std::string bytes = test::dicom_sample({.position = "10\\20\\" + z, .series = "1", .instance = z, .first = first});
+    const std::string tag = test::bytes_of<std::uint16_t>({0x28, 0x103}) + "US" + test::bytes_of<std::uint16_t>({2});
+    bytes[bytes.find(tag) + tag.size()] = 0;
+    (void)folder_.write(z, bytes);
+  };
+  unsigned_slice("30", 0);
+  unsigned_slice("34", 6);
+  const auto stored_as = [&](ScalarType type, auto zero, float last) {
+    const StoredVolume stored = read_stored_volume(folder_.file("."));
+    EXPECT_EQ(stored.stored_type, type);
+    ASSERT_TRUE(std::holds_alternative<Grid<decltype(zero)>>(stored.values));
+    const Volume floats = read_volume(folder_.file("."));
+    EXPECT_EQ(floats.stored_type, type);
+    EXPECT_EQ(floats.values.values()[11], last);
+    EXPECT_EQ(volume_sha256(stored), volume_sha256(floats));
+  };
+  stored_as(ScalarType::kInt16, std::int16_t{}, -989.0f);
+  unsigned_slice("34", 33762);
+  stored_as(ScalarType::kInt16, std::int16_t{}, 32767.0f);
+  unsigned_slice("34", 33763);
+  stored_as(ScalarType::kInt32, float{}, 32768.0f);
+}
+
 TEST_F(Itk, ReadsATiltedGantryAsAnObliqueAxis) {
   (void)folder_.write("a", test::dicom_sample({.position = "10\\20\\30", .series = "1", .instance = "1", .first = 0}));
   (void)folder_.write("b", test::dicom_sample({.position = "10\\21\\34", .series = "1", .instance = "2", .first = 6}));
