@@ -66,6 +66,12 @@ Lattice lattice_of(const VtkExtent& points, const VtkExtent& voxels, const std::
   return lattice;
 }
 
+void require_covered(const std::string& path, std::uint64_t in_pieces, std::uint64_t in_whole) {
+  if (in_pieces < in_whole)
+    throw IoError(fmt::format("{}: VTK XML: its pieces leave out {} of {} values of the WholeExtent", path,
+                              in_whole - in_pieces, in_whole));
+}
+
 void VtkPieces::put(const VtkExtent& piece, const DecodedValues& values) {
   values_.rounded |= values.rounded;
   values_.found_nodata |= values.found_nodata;
@@ -91,9 +97,8 @@ void VtkPieces::put(const VtkExtent& piece, const DecodedValues& values) {
 }
 
 DecodedValues VtkPieces::take(const std::string& path) {
-  if (const auto missing = std::count(is_there_.begin(), is_there_.end(), false); missing > 0)
-    throw IoError(fmt::format("{}: VTK XML: its pieces leave out {} of {} values of the WholeExtent", path, missing,
-                              is_there_.size()));
+  const auto there = std::uint64_t(std::count(is_there_.begin(), is_there_.end(), true));
+  require_covered(path, there, is_there_.size());
   return std::move(values_);
 }
 

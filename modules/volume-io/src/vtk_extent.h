@@ -41,6 +41,9 @@ void parse_numbers(const std::string& path, std::string_view attribute, std::str
 [[nodiscard]] Lattice lattice_of(const VtkExtent& points, const VtkExtent& voxels, const std::array<double, 3>& origin,
                                  const std::array<double, 3>& spacing, const std::array<double, 9>& direction);
 
+/// \throw IoError naming `path` if pieces have fewer values than the whole
+void require_covered(const std::string& path, std::uint64_t in_pieces, std::uint64_t in_whole);
+
 /// Puts pieces into their places of a whole. \pre the sizes of both are checked, and `count` is the whole's
 class VtkPieces {
  public:

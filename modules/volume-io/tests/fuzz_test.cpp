@@ -120,8 +120,12 @@ TEST(Fuzz, LegacyVtkHeaders) {
 
 TEST(Fuzz, VtkXmlFiles) {
   if (!test::has_reader("vti")) GTEST_SKIP() << "no pugixml in this build";
-  for (const std::string& file :
-       {test::vti_sample(), test::vti_zlib_sample(), test::vti_raw_sample(), test::kVtkAppendedBase64ZlibWideBigEndian})
+  std::string pieces = test::vti_sample({.extent = "0 1 0 1 0 1", .data = "0 1 3 4 6 7 9 10"});
+  pieces.insert(pieces.find("</ImageData>"),
+                R"(<Piece Extent="2 2 0 1 0 1"><PointData><DataArray type="Int16" Name="ramp" format="ascii">2 5 8 11)"
+                "</DataArray></PointData></Piece>");
+  for (const std::string& file : {test::vti_sample(), test::vti_zlib_sample(), test::vti_raw_sample(),
+                                  test::kVtkAppendedBase64ZlibWideBigEndian, pieces})
     fuzz("a.vti", file, file.size(), 300 * test::stress());
 }
 

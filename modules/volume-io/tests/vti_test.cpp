@@ -186,6 +186,11 @@ TEST_F(Vti, IsPutTogetherFromPieces) {
   // Neighbours share the points of their border.
   expect_ramp(read_volume(folder_.write("a.vti", file(left + piece("2 3 0 1 0 1", {1, 2, 4, 5, 7, 8, 10, 11})))));
   EXPECT_THAT(refused("a.vti", file(left)), HasSubstr("leave out 4 of 12 values"));
+  EXPECT_THAT(
+      refused("a.vti",
+              R"(<VTKFile type="ImageData" byte_order="LittleEndian"><ImageData WholeExtent="0 999 0 999 0 99">)" +
+                  piece("0 0 0 0 0 0", {7}) + "</ImageData></VTKFile>"),
+      HasSubstr("leave out 99999999 of 100000000 values"));
   EXPECT_THAT(refused("a.vti", file(left + left)), HasSubstr("leave out 4 of 12 values"));
   EXPECT_THAT(refused("a.vti", file(piece("1 4 0 1 0 1", {1}))), HasSubstr("'1 4 0 1 0 1' of a Piece lies beyond"));
   std::string other = right;

@@ -276,7 +276,9 @@ class VtiReader final : public VolumeReader {
                                            const ReadOptions& options, const Run& run) {
     if (pieces.size() == 1 && pieces[0].voxels == whole)
       return detail::read_vtk_xml_array(pieces[0].array, count, options, run);
-    detail::require_room(pieces[0].array, count);
+    std::uint64_t all = 0;
+    for (const VtiPiece& piece : pieces) detail::require_room(pieces[0].array, all += piece.count);
+    detail::require_covered(source, all, count);
     detail::VtkPieces parts(whole, count);
     for (const VtiPiece& piece : pieces)
       parts.put(piece.voxels, detail::read_vtk_xml_array(piece.array, piece.count, options, run));
