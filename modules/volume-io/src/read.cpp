@@ -13,7 +13,8 @@ namespace {
 
 constexpr std::string_view kFormats =
     "gen:NAME[:N], NRRD (.nrrd, .nhdr), NIfTI (.nii, .nii.gz), MetaImage (.mha, .mhd), MRC (.mrc, .map, also .gz), "
-    "VTK image data (.vti, legacy .vtk), NumPy arrays (.npy), TIFF stacks, folders of DICOM slices, and name_WxHxD_type.raw";
+    "VTK image data (.vti, legacy .vtk), NumPy arrays (.npy), TIFF stacks, folders of DICOM slices, and "
+    "name_WxHxD_type.raw";
 
 /// \throw InvalidInput, IoError: nobody claims the source
 [[noreturn]] void refuse(const std::string& source, const std::string& missing) {
