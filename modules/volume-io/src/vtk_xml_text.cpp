@@ -38,9 +38,8 @@ void require_root_end(const std::string& path, std::uint64_t size) {
 }  // namespace
 
 bool is_vtk_xml(const std::string& path) {
-  std::string_view rest;
   const std::string bytes = first_bytes(path, kAroundRoot);
-  rest = bytes;
+  std::string_view rest = bytes;
   if (rest.starts_with("\xEF\xBB\xBF")) rest.remove_prefix(3);
   rest.remove_prefix(std::min(rest.find_first_not_of(kTextBlanks), rest.size()));
   return rest.starts_with('<') && rest.find(kRoot) != std::string_view::npos;

@@ -42,7 +42,7 @@ TEST_F(RefusedVti, NamesWhatItsHeaderLacksOrHasTooMuch) {
               HasSubstr("one number a point or cell is needed; there is 'ramp' (type 'Bit')"));
   EXPECT_THAT(edited("type=\"Int16\"", "type=\"Int16\" NumberOfComponents=\"2\""), HasSubstr("'ramp' (2 components)"));
   EXPECT_THAT(edited("format=\"ascii\"", ""), HasSubstr("DataArray has no 'format'"));
-  EXPECT_THAT(edited("format=\"ascii\"", "format=\"text\""), HasSubstr("supported are ascii and binary and appended"));
+  EXPECT_THAT(edited("format=\"ascii\"", "format=\"text\""), HasSubstr("supported are ascii, binary, appended"));
   EXPECT_THAT(edited("=\"0 2 0 1 0 1\" O", "=\"0 2 0 1 0 1.5\" O"), HasSubstr("whole numbers of 32 bits are needed"));
   EXPECT_THAT(edited("=\"0 2 0 1 0 1\" O", "=\"0 2 0 1 0 9999999999\" O"), HasSubstr("whole numbers of 32 bits"));
   EXPECT_THAT(edited("=\"0 2 0 1 0 1\" O", "=\"0 2 0 1 0\" O"), HasSubstr("6 numbers are needed"));
@@ -95,7 +95,7 @@ TEST_F(RefusedVti, CountsTheBytesOfItsData) {
   EXPECT_THAT(edited(raw, "offset=\"0\"", "offset=\"100\""), HasSubstr("the data end within"));
   EXPECT_THAT(edited(raw, "offset=\"0\"", ""), HasSubstr("DataArray has no 'offset'"));
   EXPECT_THAT(edited(raw, "\"raw\">_", "\"raw\">"), HasSubstr("AppendedData do not begin with '_'"));
-  EXPECT_THAT(edited(raw, "\"raw\"", "\"hex\""), HasSubstr("encoding 'hex': supported are raw and base64"));
+  EXPECT_THAT(edited(raw, "\"raw\"", "\"hex\""), HasSubstr("encoding 'hex': supported are raw, base64"));
   EXPECT_THAT(edited(raw, "LittleEndian", "Middle"), HasSubstr("byte_order 'Middle'"));
   EXPECT_THAT(edited(raw, "byte_order=\"LittleEndian\"", ""), HasSubstr("VTKFile has no 'byte_order'"));
   EXPECT_THAT(edited(raw, "byte_order", "header_type=\"UInt16\" byte_order"), HasSubstr("header_type 'UInt16'"));

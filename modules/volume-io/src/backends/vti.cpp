@@ -178,7 +178,7 @@ class VtiFile {
     const std::string value = attribute(path_, node, name);
     if (std::find(allowed.begin(), allowed.end(), value) == allowed.end())
       throw InvalidInput(fmt::format("{}: VTK XML: {} '{}': supported {} {}", path_, name, detail::excerpt(value),
-                                     allowed.size() > 1 ? "are" : "is", fmt::join(allowed, " and ")));
+                                     allowed.size() > 1 ? "are" : "is", fmt::join(allowed, ", ")));
     return value;
   }
   [[nodiscard]] std::uint64_t text_begin(const pugi::xml_node& node) const {
