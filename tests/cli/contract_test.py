@@ -61,6 +61,11 @@ class Bake(CommandLineTest):
         self.assertTrue({"read", "sites", "trace", "resample", "write", "total"} <= report["seconds"].keys())
         self.assertEqual(report["texels"], 15**3)
 
+    def test_peak_memory_is_the_programs_own(self):
+        held = b"1" * (400 << 20)  # of whoever calls
+        self.bake("--report", "report.json", "--bounces", 0)
+        self.assertTrue(1 << 20 < self.report()["peak_memory_bytes"] < len(held) / 2)
+
     def test_coloured_light_has_three_channels_first(self):
         self.write("scene.json", '{"environment": {"type": "uniform", "radiance": [1, 0.5, 0.25]}}')
         self.bake("--scene", "scene.json", "--bounces", 0)

@@ -2,10 +2,10 @@
 
 #include <fmt/format.h>
 #include <isolux/bake/version.h>
+#include <isolux/core/machine_memory.h>
 #include <isolux/core/options.h>
 #include <isolux/core/parallel.h>
 #include <isolux/volume_io/atomic_file.h>
-#include <sys/resource.h>
 
 #include <limits>
 
@@ -68,9 +68,7 @@ void Session::add_seconds(const std::string& stage, double seconds) {
 
 void Session::write_report() const {
   nlohmann::json complete = report;
-  rusage usage{};
-  getrusage(RUSAGE_SELF, &usage);
-  complete["peak_memory_bytes"] = std::int64_t(usage.ru_maxrss) * 1024;
+  complete["peak_memory_bytes"] = peak_memory();
   complete["version"] = kVersion;
   complete["settings"]["threads"] = thread_count(run);
   complete["settings"]["seed"] = run.seed;

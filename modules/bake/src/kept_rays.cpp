@@ -238,6 +238,7 @@ void KeptRays::finish_links() {
   links_.reset();
   means_.reset();
   release(last_);
+  return_freed_memory();
 }
 
 SampleSet KeptRays::trace_and_solve(const Scene& scene, const Run& run, BakeResult& result) {

@@ -7,12 +7,15 @@
 #include <cmath>
 #include <cstdint>
 #include <span>
+#include <string_view>
 #include <utility>
 #include <vector>
 
 #include "lit_texels.h"
+#include "sample_window.h"
 #include "texel_looks.h"
 #include "wide/denoise_kernels.h"
+#include "window_findings.h"
 #include "window_shares.h"
 
 namespace isolux {
@@ -33,17 +36,6 @@ constexpr float kApart = 5.0f;
 constexpr double kUnseen = 4e-4;
 constexpr std::size_t kRowsABlock = 4;
 
-/// What the windows of one sample say of it, to be averaged over the samples around: WindowsAround's numbers.
-struct Findings {
-  std::array<float, kWindowCount> apart{};
-  std::array<float, kWindowCount> noise{1.0f, 1.0f, 1.0f};
-  std::array<float, kWindowCount> noise_apart{};
-  float left = 0.0f;
-  float follows = 1.0f;
-  float product = 0.0f;
-  float variance = 0.0f;
-};
-
 /// Rows along x, or along the longest axis where there are too few texels along that to fill the lanes.
 std::array<int, 3> axes_for(const Index3& texels, std::size_t lanes) {
   std::array<int, 3> axes{0, 1, 2};
@@ -55,19 +47,24 @@ std::array<int, 3> axes_for(const Index3& texels, std::size_t lanes) {
 
 class Denoiser {
  public:
-  Denoiser(const Volume& volume, const Lattice& texels, const SampleSet& samples, const Run& run)
+  /// Texels are denoised so many at a time, in whole layers: of those far from them nothing is held.
+  Denoiser(const Volume& volume, const Lattice& texels, const SampleSet& samples, std::size_t texels_a_step,
+           const Run& run)
       : channels_(std::size_t(samples.channels)),
         run_(run),
         kernels_(wide::denoise_kernels(channels_)),
         axes_(axes_for(texels.size, kernels_.lanes)),
-        lit_(volume.lattice(), samples.sites, texels, axes_, run) {
+        lit_(volume.lattice(), samples.sites, texels, axes_, run),
+        looks_(volume, samples.sites, lit_) {
     const Vec3 spacing = volume.lattice().frame.spacing();
     const Vec3 step = texels.frame.spacing() / std::cbrt(spacing.x * spacing.y * spacing.z);
     for (std::size_t a = 0; a < 3; ++a) all_.size[a] = texels.size[axes_[a]];
     all_.at = std::move(lit_.at);
     all_.channels = channels_;
     all_.stencil = wide::Stencil::of({step[axes_[0]], step[axes_[1]], step[axes_[2]]}, all_.size);
-    look_at(volume, samples.sites, lit_.sites, run, all_);
+    for (const wide::Stencil::Row& row : all_.stencil.rows) reach_ = std::max(reach_, row.z);
+    const std::size_t layers = texels_a_step / (std::size_t(all_.size[0]) * std::size_t(all_.size[1]));
+    layers_a_step_ = int(std::clamp(layers, std::size_t(1), std::size_t(all_.size[2])));
   }
 
   /// `radiance` and `variance` are the samples', or parts of them.
@@ -76,44 +73,78 @@ class Denoiser {
     unit_ = brightest > 0.0f ? std::ldexp(1.0f, -std::max(std::ilogb(brightest), -120)) : 1.0f;
     const double unseen = kUnseen * double(brightest * unit_);
     limits_.unseen = float(unseen * unseen);
-    take_light(radiance, variance, lit_, unit_, all_);
-    fit();
-    multiply_rests();
-    std::vector<float> texels(lit_.sites.size() * channels_);
-    for_each(kAround, [&](std::size_t s, std::span<const std::uint32_t> around) {
-      const bool known = is_known(around);
-      const WindowShares shares = known ? WindowShares{} : shares_of(s, around);
-      for (std::size_t c = 0; c < channels_; ++c) {
-        double e = (known ? 1.0 : shares.back()) * double(this->radiance(s)[c]);
-        for (std::size_t w = 0; w < kWindows.size(); ++w) e += shares[w] * double(smooth(w, s)[c]);
-        texels[s * channels_ + c] = known ? float(e / double(unit_)) : std::max(0.0f, float(e / double(unit_)));
-      }
-    });
-    std::vector<float> values(radiance.size());
+    const NoisyLight noisy(radiance, variance, lit_, channels_, unit_);
+    std::vector<float> values(radiance.size());  // of each texel at its first site
+    const int depth = all_.size[2];
+    make_room(layers_a_step_ + 4 * reach_);
+    // Each step asks for layers of the one before it, as far away as the stencil reaches.
+    int held = 0;
+    int fitted = 0;
+    int multiplied = 0;
+    for (int done = 0; done < depth;) {
+      const int next = std::min(depth, done + layers_a_step_);
+      const auto ahead = [&](int steps) { return std::min(depth, next + steps * reach_); };
+      hold(std::exchange(held, ahead(3)), ahead(3), noisy);
+      const Run part = part_of(run_, double(fitted) / depth, double(ahead(2)) / depth);
+      fit(std::exchange(fitted, ahead(2)), ahead(2), part);
+      multiply_rests(std::exchange(multiplied, ahead(1)), ahead(1));
+      share(done, next, values);
+      let_go_before(next - reach_);
+      done = next;
+    }
     for (std::size_t s = 0; s < lit_.of_site.size(); ++s)
-      std::copy_n(&texels[lit_.of_site[s] * channels_], channels_, &values[s * channels_]);
+      std::copy_n(&values[lit_.sites[lit_.of_site[s]] * channels_], channels_, &values[s * channels_]);
     return values;
   }
 
  private:
   [[nodiscard]] const float* radiance(std::size_t s) const { return all_.look(s) + LatticeSamples::kLight; }
   [[nodiscard]] const float* smooth(std::size_t window, std::size_t s) const {
-    return &smooth_[(s * kWindows.size() + window) * channels_];
+    return smooth_.of(s) + window * channels_;
   }
 
-  /// Calls row(y, z), in parallel.
+  /// For the samples of so many layers next to each other, wherever.
+  void make_room(int layers) {
+    std::size_t most = 0;
+    const std::size_t all = lit_.layers.size() - 1;
+    for (std::size_t z = 0; z < all; ++z)
+      most = std::max<std::size_t>(most, lit_.layers[std::min(z + std::size_t(layers), all)] - lit_.layers[z]);
+    all_.looks = SampleWindow<float>(LatticeSamples::stride(channels_), most);
+    findings_ = SampleWindow<WindowFindings>(1, most);
+    smooth_ = SampleWindow<float>(kWindows.size() * channels_, most);
+  }
+  /// Begins to hold the samples of layers.
+  void hold(int begin, int end, const NoisyLight& light) {
+    const std::size_t first = lit_.layers[std::size_t(begin)];
+    const std::size_t last = lit_.layers[std::size_t(end)];
+    all_.looks.hold_until(last);
+    findings_.hold_until(last);
+    smooth_.hold_until(last);
+    looks_.write(first, last, run_, all_);
+    light.write(first, last, run_, all_);
+  }
+  void let_go_before(int layer) {
+    if (layer <= 0) return;
+    const std::size_t first = lit_.layers[std::size_t(layer)];
+    all_.looks.let_go_before(first);
+    findings_.let_go_before(first);
+    smooth_.let_go_before(first);
+  }
+
+  /// Calls row(y, z), in parallel, for the rows of some layers.
   template <class Row>
-  void for_rows(const Row& row) const {
+  void for_rows(int begin, int end, const Run& run, std::string_view stage, const Row& row) const {
     const auto height = std::size_t(all_.size[1]);
-    parallel_blocks(height * std::size_t(all_.size[2]), kRowsABlock, run_, "denoise", [&](const Block& block) {
-      for (std::size_t r = block.begin; r < block.end; ++r) row(int(r % height), int(r / height));
+    const auto first = height * std::size_t(begin);
+    parallel_blocks(height * std::size_t(end - begin), kRowsABlock, run, stage, [&](const Block& block) {
+      for (std::size_t r = first + block.begin; r < first + block.end; ++r) row(int(r % height), int(r / height));
     });
   }
 
-  /// Calls visit(sample, the `count` nearest of the stencil, itself the first).
+  /// Calls visit(sample, the `count` nearest of the stencil, itself the first) for the samples of some layers.
   template <class Visit>
-  void for_each(std::size_t count, const Visit& visit) const {
-    for_rows([&](int y, int z) {
+  void for_each(int begin, int end, std::size_t count, const Visit& visit) const {
+    for_rows(begin, end, run_, "", [&](int y, int z) {
       std::vector<std::uint32_t> near(count);
       for (int x = 0; x < all_.size[0]; ++x) {
         const std::uint32_t s = all_.at[all_.row(y, z) + std::size_t(x)];
@@ -148,10 +179,8 @@ class Denoiser {
                        [&](std::uint32_t s) { return all_.look(s)[LatticeSamples::kVariance] <= limits_.unseen; });
   }
 
-  void fit() {
-    findings_.assign(lit_.sites.size(), {});
-    smooth_.resize(lit_.sites.size() * kWindows.size() * channels_);
-    for_rows([&](int y, int z) {
+  void fit(int begin, int end, const Run& run) {
+    for_rows(begin, end, run, "denoise", [&](int y, int z) {
       std::array<wide::WindowFits, wide::DenoiseKernels::kMostLanes> fits;
       const auto row = std::span(all_.at).subspan(all_.row(y, z), std::size_t(all_.size[0]));
       for (std::size_t x = 0; x < row.size(); x += kernels_.lanes) {
@@ -168,13 +197,13 @@ class Denoiser {
   void keep(std::size_t s, const wide::WindowFits& fits) {
     for (std::size_t w = 0; w < kWindows.size(); ++w)
       std::copy_n(fits.is_fitted ? fits.light[w].data() : radiance(s), channels_,
-                  &smooth_[(s * kWindows.size() + w) * channels_]);
-    findings_[s].variance = all_.look(s)[LatticeSamples::kVariance];
+                  smooth_.of(s) + w * channels_);
+    findings_.of(s)->variance = all_.look(s)[LatticeSamples::kVariance];
     if (fits.is_fitted) find(s, fits);
   }
 
   void find(std::size_t s, const wide::WindowFits& fits) {
-    Findings& found = findings_[s];
+    WindowFindings& found = *findings_.of(s);
     found.noise = fits.noise;
     found.noise_apart = fits.noise_apart;
     found.follows = fits.follows;
@@ -195,8 +224,8 @@ class Denoiser {
 
   /// What the narrowest fit leaves of each sample, times what it leaves of those about it: the noise of two samples has
   /// nothing in common, what a fit misses has.
-  void multiply_rests() {
-    for_each(kTouching, [&](std::size_t s, std::span<const std::uint32_t> touching) {
+  void multiply_rests(int begin, int end) {
+    for_each(begin, end, kTouching, [&](std::size_t s, std::span<const std::uint32_t> touching) {
       float weights = 0.0f;
       float sum = 0.0f;
       for (const std::uint32_t other : touching) {
@@ -205,38 +234,26 @@ class Denoiser {
         weights += w;
         for (std::size_t c = 0; c < channels_; ++c) sum += w * rest(s, c) * rest(other, c);
       }
-      findings_[s].product = weights > 0.0f ? sum / (weights * float(channels_)) : 0.0f;
+      findings_.of(s)->product = weights > 0.0f ? sum / (weights * float(channels_)) : 0.0f;
     });
   }
 
-  [[nodiscard]] WindowShares shares_of(std::size_t s, std::span<const std::uint32_t> samples) const {
-    Findings sums{.noise = {}, .follows = 0.0f};
-    float weights = 0.0f;
-    for (const std::uint32_t other : samples) {
-      const float w = likeness(s, other);
-      const Findings& found = findings_[other];
-      weights += w;
-      for (std::size_t k = 0; k < kWindows.size(); ++k) {
-        sums.apart[k] += w * found.apart[k];
-        sums.noise[k] += w * found.noise[k];
-        sums.noise_apart[k] += w * found.noise_apart[k];
+  /// Writes the light of the texels of some layers at their sites.
+  void share(int begin, int end, std::vector<float>& values) const {
+    for_each(begin, end, kAround, [&](std::size_t s, std::span<const std::uint32_t> around) {
+      const bool known = is_known(around);
+      const WindowShares shares = known ? WindowShares{} : shares_of(s, around);
+      for (std::size_t c = 0; c < channels_; ++c) {
+        double e = (known ? 1.0 : shares.back()) * double(radiance(s)[c]);
+        for (std::size_t w = 0; w < kWindows.size(); ++w) e += shares[w] * double(smooth(w, s)[c]);
+        values[lit_.sites[s] * channels_ + c] = known ? float(e / double(unit_)) : std::max(0.0f, float(e / double(unit_)));
       }
-      sums.left += w * found.left;
-      sums.follows += w * found.follows;
-      sums.product += w * found.product;
-      sums.variance += w * found.variance;
-    }
-    const double part = 1.0 / double(weights);
-    WindowsAround around{.left = part * double(sums.left),
-                         .follows = part * double(sums.follows),
-                         .product = part * double(sums.product),
-                         .variance = part * double(sums.variance)};
-    for (std::size_t k = 0; k < kWindows.size(); ++k) {
-      around.windows[k] = {.apart = part * double(sums.apart[k]),
-                           .noise = part * double(sums.noise[k]),
-                           .noise_apart = part * double(sums.noise_apart[k])};
-    }
-    return window_shares(around);
+    });
+  }
+  [[nodiscard]] WindowShares shares_of(std::size_t s, std::span<const std::uint32_t> samples) const {
+    MeanFindings mean;
+    for (const std::uint32_t other : samples) mean.add(likeness(s, other), *findings_.of(other));
+    return window_shares(mean.mean());
   }
 
   std::size_t channels_;
@@ -244,17 +261,21 @@ class Denoiser {
   wide::DenoiseKernels kernels_;
   std::array<int, 3> axes_;  ///< of the texels, those of rows first
   LitTexels lit_;
+  TexelLooks looks_;
+  int reach_ = 0;  ///< of the stencil, layers
+  int layers_a_step_ = 0;
   float unit_ = 1.0f;  ///< a power of two times which the brightest light is some 1 to 2
   LatticeSamples all_;
-  std::vector<Findings> findings_;
-  std::vector<float> smooth_;  ///< the windows' light; the channels of each, a sample after the other
+  SampleWindow<WindowFindings> findings_;
+  SampleWindow<float> smooth_;  ///< the windows' light; the channels of each, a sample after the other
   wide::WindowLimits limits_{.counts = kWindows, .apart = kApart, .unseen = 0.0f, .ridge = kRidge, .unit = kUnitLength};
 };
 
 }  // namespace
 
-DenoisedLight denoised_light(const Volume& volume, const SampleSet& samples, const Lattice& texels, const Run& run) {
-  Denoiser denoiser(volume, texels, samples, run);
+DenoisedLight denoised_light(const Volume& volume, const SampleSet& samples, const Lattice& texels, const Run& run,
+                             std::size_t texels_a_step) {
+  Denoiser denoiser(volume, texels, samples, texels_a_step, run);
   DenoisedLight light;
   if (samples.lamps.empty()) {
     light.rest = denoiser.light(samples.radiance, samples.variance);

@@ -5,6 +5,7 @@
 #include <isolux/core/sample_set.h>
 #include <isolux/core/volume.h>
 
+#include <cstddef>
 #include <vector>
 
 namespace isolux {
@@ -25,9 +26,10 @@ struct DenoisedLight {
 /// Samples of two sides of an edge are not fitted together: shadow edges and thin walls stay. Lamps' light told apart
 /// (SampleSet::lamps) and the rest are denoised each on its own: where a lamp's light is known, it stays what it is,
 /// edges included, and does not part the windows of the rest. The same bits for any number of threads. Cost: one to two
-/// microseconds of a thread a texel whose neighbours are noisy, a tenth of that where they are not; 130 bytes and four
-/// more a texel of the lattice. \throw InvalidInput for samples that are not at the centres of `texels`; Cancelled
+/// microseconds of a thread a texel whose neighbours are noisy, a tenth of that where they are not; 8 bytes and four
+/// more a texel of the lattice, and 110 for each lit texel of `texels_a_step`, in whole layers, and of the 32 layers
+/// around. \throw InvalidInput for samples that are not at the centres of `texels`; Cancelled
 [[nodiscard]] DenoisedLight denoised_light(const Volume& volume, const SampleSet& samples, const Lattice& texels,
-                                           const Run& run);
+                                           const Run& run, std::size_t texels_a_step = std::size_t(1) << 18);
 
 }  // namespace isolux

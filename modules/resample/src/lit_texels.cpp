@@ -38,12 +38,19 @@ LitTexels::LitTexels(const Lattice& volume, const Sites& lit, const Lattice& tex
   });
   at.assign(texels.count(), kNone);
   for (std::size_t s = lit.size(); s-- > 0;) at[of_site[s]] = std::uint32_t(s);
-  for (std::uint32_t& texel : at) {
-    if (texel == kNone) continue;
-    sites.push_back(texel);
-    texel = std::uint32_t(sites.size() - 1);
+  const std::size_t layer = std::size_t(texels.size[axes[0]]) * std::size_t(texels.size[axes[1]]);
+  for (std::size_t t = 0; t < at.size(); ++t) {
+    if (t % layer == 0) layers.push_back(std::uint32_t(sites.size()));
+    if (at[t] == kNone) continue;
+    sites.push_back(at[t]);
+    at[t] = std::uint32_t(sites.size() - 1);
   }
-  for (std::uint32_t& texel : of_site) texel = at[texel];
+  layers.push_back(std::uint32_t(sites.size()));
+  if (sites.size() == of_site.size()) {
+    of_site = {};
+  } else {
+    for (std::uint32_t& texel : of_site) texel = at[texel];
+  }
 }
 
 }  // namespace isolux

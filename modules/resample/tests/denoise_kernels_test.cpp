@@ -28,6 +28,7 @@ struct Box {
       : steps(apart), random(3, channels) {
     all.size = {21, 9, 8};
     all.channels = channels;
+    all.looks = SampleWindow<float>(LatticeSamples::stride(channels));
     all.stencil = wide::Stencil::of(apart, all.size);
     for (int k = 0; k < all.size[2]; ++k)
       for (int j = 0; j < all.size[1]; ++j)
@@ -38,7 +39,7 @@ struct Box {
     if (random.uniform_double() >= part) return;
     all.at.back() = std::uint32_t(points.size());
     points.push_back({i, j, k});
-    all.looks.resize(points.size() * LatticeSamples::stride(all.channels));
+    all.looks.hold_until(points.size());
     float* const look = all.look(points.size() - 1);
     const float turn = 0.3f * value();
     look[LatticeSamples::kIsovalue] = value();
@@ -219,7 +220,8 @@ TEST_P(DenoiseKernels, KeepASampleThatIsAlone) {
   Box box(0.0);
   box.all.at[box.all.row(4, 3) + 10] = 0;
   box.points.push_back({10, 4, 3});
-  box.all.looks.assign(LatticeSamples::stride(1), 0.5f);
+  box.all.looks.hold_until(1);
+  std::fill_n(box.all.look(0), LatticeSamples::stride(1), 0.5f);
   const WindowFits fitted = fits(box)[0];
   ASSERT_TRUE(fitted.is_fitted);
   for (std::size_t w = 0; w < kWindowCount; ++w) {

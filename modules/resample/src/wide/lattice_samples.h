@@ -6,6 +6,7 @@
 #include <limits>
 #include <vector>
 
+#include "sample_window.h"
 #include "wide/stencil.h"
 
 namespace isolux::wide {
@@ -27,11 +28,11 @@ struct LatticeSamples {
   std::vector<std::uint32_t> at;  ///< the sample of each point, or kNone
   Stencil stencil;                ///< its unit of length is that of isovalues, too
   std::size_t channels = 1;       ///< 1 or 3
-  std::vector<float> looks;       ///< one after the other, in whole fours
+  SampleWindow<float> looks;      ///< one after the other, in whole fours
 
   [[nodiscard]] static constexpr std::size_t stride(std::size_t channels) { return (kLight + channels + 3) / 4 * 4; }
-  [[nodiscard]] const float* look(std::size_t sample) const { return &looks[sample * stride(channels)]; }
-  [[nodiscard]] float* look(std::size_t sample) { return &looks[sample * stride(channels)]; }
+  [[nodiscard]] const float* look(std::size_t sample) const { return looks.of(sample); }
+  [[nodiscard]] float* look(std::size_t sample) { return looks.of(sample); }
   /// Where a row of points along x begins.
   [[nodiscard]] std::size_t row(int y, int z) const {
     return (std::size_t(z) * std::size_t(size[1]) + std::size_t(y)) * std::size_t(size[0]);
