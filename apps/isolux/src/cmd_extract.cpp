@@ -187,9 +187,8 @@ void extract(const Subject& subject, const BackendChoice& choice, const ExtractO
 }
 
 void run_extract(const ExtractOptions& options, Session& session) {
-  const std::vector<std::string> outputs = output_names(options.output, options.iso);
-  for (const std::string& output : outputs) require_output(output);
-  if (outputs.size() > 1) session.report["output"] = options.output;
+  for (const std::string& output : output_names(options.output, options.iso)) require_output(output);
+  session.report["output"] = options.output;
   BackendChoice choice{options.backend, {}};
   apply_settings("--set", options.set, {{"extractor", &choice.settings}});
   require_choice(session.stages.extractors, choice);
@@ -214,8 +213,7 @@ void add_extract_command(CLI::App& program, Session& session) {
   options->iso.add_to(command);
   command
       .add_option("-o,--output", options->output,
-                  "the mesh to write: .ply, .glb, .obj, .off or .stl; of several isovalues with {iso} or %03d in it, "
-                  "%% being %")
+                  "the mesh to write: .ply, .glb, .obj, .off or .stl; of several isovalues with {iso} or %03d in it")
       ->required()
       ->type_name("MESH.ply");
   session.writes(outputs_of(options->output, options->iso));

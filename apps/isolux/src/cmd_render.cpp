@@ -135,7 +135,7 @@ void run_render(const RenderOptions& options, Session& session) {
     throw UsageError("--projection orthographic: --eye looks in perspective; give one of them");
   if (!options.eye.empty()) static_cast<void>(parse_numbers("--eye", options.eye, 3));
   options.require_pictures();
-  if (output_names(options.output, options.iso).size() > 1) session.report["output"] = options.output;
+  session.report["output"] = options.output;
   const Volume volume = options.volume.read(session);
   std::optional<LightFile> light;
   if (options.light.given()) light = options.light.read(volume, session);

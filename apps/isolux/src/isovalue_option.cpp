@@ -96,6 +96,8 @@ void IsovalueOption::add_one_to(CLI::App& command, const std::string& help) {
   command.add_option("--iso", text_, help)->type_name("H|Nsigma")->check(check_by(told_isovalue));
 }
 
+bool IsovalueOption::is_list() const { return text_.find_first_of(",:") != std::string::npos; }
+
 std::vector<std::string> IsovalueOption::texts() const {
   std::vector<std::string> texts;
   for (const ToldIsovalue& told : told_isovalues(text_))

@@ -21,6 +21,8 @@ class IsovalueOption {
   /// One, or none.
   void add_one_to(CLI::App& command, const std::string& help);
   [[nodiscard]] bool given() const { return !text_.empty(); }
+  /// Whether it was told as a list or as steps, which may be of one.
+  [[nodiscard]] bool is_list() const;
   /// Each as the command line tells it, in the fewest digits: "-0.3", "2.5sigma".
   [[nodiscard]] std::vector<std::string> texts() const;
   /// The isovalues in this volume. Cost: of sigmas two passes. \throw UsageError if floats do not hold one

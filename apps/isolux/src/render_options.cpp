@@ -51,9 +51,7 @@ void add_framing_options(CLI::App& command, RenderOptions& options) {
 void RenderOptions::add_to(CLI::App& command, Session& session) {
   volume.add_to(command, session);
   iso.add_to(command);
-  command
-      .add_option("-o,--output", output,
-                  "the picture to write; of several isovalues with {iso} or %03d in it, %% being %")
+  command.add_option("-o,--output", output, "the picture to write; of several isovalues with {iso} or %03d in it")
       ->required()
       ->type_name("IMAGE.png");
   session.writes(outputs_of(output, iso));

@@ -11,54 +11,30 @@ namespace {
 
 constexpr const char* kPlaceholders = "{iso} for the isovalue, or %d or %03d for its number from 0 on";
 
-/// A name's placeholder, if it has one, and what stands around it.
-struct OutputName {
-  std::string before;
-  std::string placeholder;
-  std::string behind;
-
-  [[nodiscard]] std::string filled(std::size_t number, const std::string& isovalue) const {
-    if (placeholder.empty()) return before;
-    if (placeholder == "{iso}") return before + isovalue + behind;
-    return before + fmt::format("{:0{}}", number, placeholder == "%d" ? 1 : placeholder[2] - '0') + behind;
-  }
-};
-
-/// \throw UsageError for several placeholders
-OutputName parts_of(const std::string& output) {
-  static const std::regex marks(R"(%%|\{iso\}|%(0[1-9])?d)");
-  OutputName name;
-  std::string* text = &name.before;
-  auto at = output.begin();
-  for (std::sregex_iterator it(output.begin(), output.end(), marks), end; it != end; ++it) {
-    const std::ssub_match mark = (*it)[0];
-    text->append(at, mark.first);
-    at = mark.second;
-    if (mark == "%%") {
-      *text += '%';
-      continue;
-    }
-    if (!name.placeholder.empty())
-      throw UsageError(fmt::format("--output = '{}': allowed is one placeholder: {}", output, kPlaceholders));
-    name.placeholder = mark;
-    text = &name.behind;
-  }
-  text->append(at, output.end());
-  return name;
+std::string filled(const std::smatch& name, std::size_t number, const std::string& isovalue) {
+  std::string value = isovalue;
+  if (name.str() != "{iso}") value = fmt::format("{:0{}}", number, name[1].matched ? name[1].str()[1] - '0' : 1);
+  return name.prefix().str() + value + name.suffix().str();
 }
 
 }  // namespace
 
 std::vector<std::string> output_names(const std::string& output, const IsovalueOption& isovalues) {
+  if (!isovalues.is_list()) return {output};
   const std::vector<std::string> texts = isovalues.texts();
-  const OutputName name = parts_of(output);
-  if (name.placeholder.empty() && texts.size() > 1)
+  static const std::regex placeholder(R"(\{iso\}|%(0[1-9])?d)");
+  std::smatch first;
+  const bool has_place = std::regex_search(output, first, placeholder);
+  if (!has_place && texts.size() == 1) return {output};
+  if (!has_place)
     throw UsageError(
         fmt::format("--output = '{}': {} isovalues need a placeholder in it: {}", output, texts.size(), kPlaceholders));
+  if (const std::string rest = first.suffix(); std::regex_search(rest, placeholder))
+    throw UsageError(fmt::format("--output = '{}': allowed is one placeholder: {}", output, kPlaceholders));
   std::vector<std::string> names;
   std::map<std::string, std::size_t> taken;
   for (std::size_t i = 0; i < texts.size(); ++i) {
-    names.push_back(name.filled(i, texts[i]));
+    names.push_back(filled(first, i, texts[i]));
     const auto [before, is_new] = taken.try_emplace(names.back(), i);
     if (!is_new)
       throw UsageError(

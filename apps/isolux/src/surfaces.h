@@ -9,10 +9,10 @@
 
 namespace isolux {
 
-/// The files that --output names for the isovalues of --iso, its one placeholder filled: {iso} with the isovalue as
-/// --iso tells it, %d with its number from 0 on, %03d with that in at least three digits; %% is a percent sign. \throw
-/// UsageError for several without a placeholder, with more than one placeholder, or if two isovalues would have one
-/// file
+/// The files that --output names for the isovalues of --iso: itself for a plain one; of a list or steps its one
+/// placeholder is filled, {iso} with the isovalue as --iso tells it, %d with its number from 0 on, %03d with that in at
+/// least three digits. \throw UsageError for several without a placeholder, with more than one placeholder, or if two
+/// isovalues would have one file
 [[nodiscard]] std::vector<std::string> output_names(const std::string& output, const IsovalueOption& isovalues);
 
 /// An --output for several isovalues: checked before the work as other outputs are.
