@@ -1,6 +1,7 @@
 #include "bin_order.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace isolux {
@@ -9,16 +10,22 @@ namespace {
 /// Bounds the bins' memory on boxes that are far longer than wide.
 constexpr int kMostBins = 2048;
 
+/// The side of `bins` cubes that fill the box. An axis shorter than that has one bin, and counts no more:
+/// cubes as small as a flat box's volume asks for would be all but empty.
+float bin_side(const Point& far_corner, double bins) {
+  std::array<double, 3> lengths{};
+  for (std::size_t a = 0; a < 3; ++a) lengths[a] = double(far_corner.x[a]);
+  std::sort(lengths.begin(), lengths.end());
+  double side = std::cbrt(lengths[0] * lengths[1] * lengths[2] / bins);
+  if (lengths[0] <= side) side = std::sqrt(lengths[1] * lengths[2] / bins);
+  if (lengths[1] <= side) side = lengths[2] / bins;
+  return std::max(float(side), float(lengths[2]) / float(kMostBins));
+}
+
 }  // namespace
 
 BinOrder::BinOrder(std::span<const Point> given, const Point& far_corner, double points_a_bin) {
-  double volume = 1.0;
-  float longest = 0.0f;
-  for (int a = 0; a < 3; ++a) {
-    volume *= double(far_corner.x[a]);
-    longest = std::max(longest, far_corner.x[a]);
-  }
-  side = std::max(float(std::cbrt(volume * points_a_bin / double(given.size()))), longest / float(kMostBins));
+  side = bin_side(far_corner, double(given.size()) / points_a_bin);
   for (std::size_t a = 0; a < 3; ++a) size[a] = std::max(1, int(std::ceil(far_corner.x[a] / side)));
 
   std::vector<std::size_t> bins(given.size());

@@ -98,6 +98,17 @@ TEST_P(Shepard, EqualsBruteForceWithinARadius) {
   }
 }
 
+TEST_P(Shepard, EqualsBruteForceInFlatAndThinBoxes) {
+  for (const Vec3& spacing : {Vec3(1e-8, 1, 1), Vec3(1, 1, 1e-8), Vec3(1, 1e-8, 1e-8)}) {
+    const Volume volume = ramp_volume({8, 8, 8}, spacing);
+    const SampleSet samples = random_samples(volume, 500, 1, bumpy);
+    const Lattice texels = cell_lattice(volume.lattice());
+    const Settings settings{{"k", "11"}};
+    EXPECT_EQ(resample(volume, samples, texels, settings).grid.values,
+              resamplers().create("brute_force", settings)->resample(volume, samples, texels, {}).grid.values);
+  }
+}
+
 // Samples on a lattice are the worst case of equally near ones: all backends must take the same.
 TEST_P(Shepard, ResolvesTiesByTheSamplesIndex) {
   const Volume volume = ramp_volume({7, 7, 7});

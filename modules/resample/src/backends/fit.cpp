@@ -140,6 +140,10 @@ class Fit final : public Resampler {
     std::vector<float> coverage;
     const FitVector prior = system.prior(light, coverage);
     const FitVector x = solve(system, light, damping, prior, read_between(result.grid.detail), run);
+    if (std::any_of(x.numbers.begin(), x.numbers.end(), [](float v) { return std::isnan(v); }))
+      throw InvalidInput(
+          "a fit of light is beyond floats where the volume's spacings, or its values, are too many orders of "
+          "magnitude apart; allowed is another resampler, such as direct");
     LightDetail& detail = result.grid.detail;
     const FitTexels& texels = system.texels();
     const FitTerms& terms = system.terms();
