@@ -262,17 +262,6 @@ TEST(Fit, StaysFiniteOnFlatData) {
     for (const float v : slopes) EXPECT_TRUE(std::isfinite(v));
 }
 
-TEST(Fit, RefusesInWordsWhatFloatsDoNotHold) {
-  const Volume volume = make_volume({8, 8, 8}, {1e-37, 1, 1}, [](const Vec3& p) { return std::sin(p.x) + p.y; });
-  const SampleSet samples = random_samples(volume, 500, 1, [](const Vec3& p, int) { return p.x > 2.5 ? 1.0f : 0.0f; });
-  try {
-    (void)fitted(volume, samples, cell_lattice(volume.lattice()));
-    ADD_FAILURE() << "light of no numbers is told as light";
-  } catch (const InvalidInput& error) {
-    EXPECT_NE(std::string(error.what()).find("orders of magnitude"), std::string::npos) << error.what();
-  }
-}
-
 TEST(Fit, IsTheSameForAnyNumberOfThreads) {
   const Volume volume = wavy_volume();
   const SampleSet samples = random_samples(

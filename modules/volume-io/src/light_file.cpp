@@ -1,5 +1,6 @@
 #include "nrrd_header.h"
 #include "nrrd_write.h"
+#include "plain_text.h"
 
 #include <fmt/format.h>
 #include <isolux/core/error.h>
@@ -16,6 +17,10 @@
 
 namespace isolux {
 namespace {
+
+/// Sizes of a near-field term's step that mean anything, in grid spacings: what is found there is divided by it.
+constexpr float kLeastStep = 1e-6f;
+constexpr float kMostStep = 1e6f;
 
 /// "step mean r g b" of each term, with semicolons between.
 std::string near_field_text(const std::vector<NearFieldTerm>& terms) {
@@ -35,7 +40,12 @@ std::vector<NearFieldTerm> parse_near_field(const std::string& path, const std::
     numbers.imbue(std::locale::classic());  // whatever the program around has set
     NearFieldTerm t;
     if (!(numbers >> t.step >> t.mean >> t.weight.x >> t.weight.y >> t.weight.z)) {
-      throw InvalidInput(fmt::format("{}: {} '{}'; terms of five numbers are wanted", path, key, text));
+      throw InvalidInput(
+          fmt::format("{}: {} '{}'; terms of five numbers are wanted", path, key, detail::excerpt(text)));
+    }
+    if (const float size = std::fabs(t.step); !(size >= kLeastStep && size <= kMostStep)) {
+      throw InvalidInput(fmt::format("{}: {} has a step of {} in '{}'; allowed are {:g} to {:g} and their negatives",
+                                     path, key, t.step, detail::excerpt(text), kLeastStep, kMostStep));
     }
     terms.push_back(t);
   }
@@ -147,7 +157,11 @@ void read_detail(const std::string& path, const KeyValues& pairs, LevelSetSide s
     extra.texel_light = kind;
   }
   if (const auto it = pairs.find(detail_key(side, "light_ceiling")); it != pairs.end()) {
-    extra.ceiling = float(parse_number(path + ": " + it->first, it->second));
+    const double ceiling = parse_number(path + ": " + it->first, it->second);
+    extra.ceiling = float(ceiling);
+    if (!(ceiling >= 0.0 && std::isfinite(extra.ceiling)))
+      throw InvalidInput(fmt::format("{}: {} = '{}': allowed are 0 to {:g}", path, it->first, it->second,
+                                     double(std::numeric_limits<float>::max())));
   }
   if (const auto it = pairs.find("isolux.iso_range"); it != pairs.end()) {
     extra.isovalues = parse_isovalues(path, it->second);
