@@ -1,9 +1,11 @@
+#include <isolux/core/error.h>
 #include <isolux/core/parallel.h>
 #include <isolux/core/release.h>
 #include <isolux/resample/light_reader.h>
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <glm/common.hpp>
 #include <numeric>
 #include <optional>
@@ -137,6 +139,9 @@ LightReader::LightReader(const Volume& volume, const IlluminationGrid& light, Te
   const ValueRange lit = detail.isovalues.value_or(all);
   if (impl->sloped) impl->reference = 0.5f * std::max(all.low, lit.low) + 0.5f * std::min(all.high, lit.high);
   if (impl->sloped || impl->turned) move_to_isovalue(impl->offsets, impl->near_field, impl->reference, run);
+  const std::vector<float>& moved = impl->offsets.values;
+  if (!std::all_of(moved.begin(), moved.end(), [](float v) { return std::isfinite(v); }))
+    throw InvalidInput("light whose values, slopes and near field are together beyond floats cannot be read");
   if (storage == TexelStorage::kBricks && (lit.low > all.low || lit.high < all.high)) {
     LightBricks bricks = make_light_bricks(volume, impl->offsets, lit);
     if (bricks.stored() < light.values.size() * std::size_t(detail.numbers())) {

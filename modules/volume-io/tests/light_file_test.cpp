@@ -1,5 +1,6 @@
 #include "support.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 
 #include <cstring>
@@ -195,6 +196,33 @@ TEST(LightFile, TakesNormalSlopesOnlyByTheirKey) {
               HasSubstr("4 or 12"));
   EXPECT_THAT(test::error_of([&] { (void)read("isolux.texel_numbers:=value hue\n", "5", "abcde"); }),
               HasSubstr("allowed are value slope normal, value normal"));
+}
+
+// They would make infinities of light, and numbers that are none.
+TEST(LightFile, RefusesNumbersThatNoLightHas) {
+  const test::TemporaryFolder folder;
+  for (const std::string side : {"isolux.", "isolux.inner."}) {
+    const auto why = [&](const std::string& name, const std::string& value) {
+      const std::string path =
+          folder.write("l.nrrd", "NRRD0005\ntype: uint8\ndimension: 4\nsizes: 2 1 1 1\n" +
+                                     ("encoding: raw\nisolux.sides:=both\n" + side) + name + ":=" + value + "\n\nab");
+      const std::string message = test::error_of([&] { (void)read_light(path); });
+      EXPECT_THAT(message, ::testing::AnyOf("", ::testing::StartsWith(path + ": " + side + name + " ")));
+      return message;
+    };
+    for (const char* ceiling : {"-1", "-1e-30", "1e39", "-1e39", "inf", "nan"})
+      EXPECT_THAT(why("light_ceiling", ceiling), HasSubstr(fmt::format("'{}': allowed ", ceiling)));
+    for (const char* ceiling : {"0", "1e-40", "3.4e38"}) EXPECT_EQ(why("light_ceiling", ceiling), "");
+    for (const std::string name : {"near_field", "own_near_field"}) {
+      for (const char* step : {"0", "-0", "1e-320", "-1e-38", "1e-7", "2e6", "-3e38"})
+        EXPECT_THAT(why(name, fmt::format("1 .5 .1 .1 .1; {} .5 .1 .1 .1", step)),
+                    HasSubstr("allowed are 1e-06 to 1e+06 and their negatives"))
+            << step;
+      for (const char* five : {"1 nan .1 .1 .1", "1 .5 inf .1 .1", "1e39 .5 .1 .1 .1", "1 .5 1e39 .1 .1"})
+        EXPECT_THAT(why(name, five), HasSubstr("terms of five numbers"));
+      EXPECT_EQ(why(name, "-1.5 .5 .1 .1 .1; 2 -.5 .1 .1 .1"), "");
+    }
+  }
 }
 
 TEST(LightFile, HasTheLayoutThatOtherReadersNeed) {

@@ -27,8 +27,8 @@ enum class TexelStorage {
 class LightReader {
  public:
   /// One pass over the grid; where it has near-field terms and TexelLight::kOwn, some tenths of a microsecond a texel
-  /// on all threads of `run`. \pre require_usable(volume). \throw InvalidInput if the grid is not complete or its
-  /// detail does not match; Cancelled
+  /// on all threads of `run`. \pre require_usable(volume). \throw InvalidInput if the grid is not complete, its detail
+  /// does not match or they leave the range of floats together; Cancelled
   LightReader(const Volume& volume, const IlluminationGrid& light, TexelStorage storage = TexelStorage::kDense,
               const Run& run = {});
   LightReader(Volume&& volume, const IlluminationGrid& light, TexelStorage storage = TexelStorage::kDense,
