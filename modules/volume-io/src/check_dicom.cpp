@@ -24,6 +24,11 @@ constexpr std::uint32_t kItem = 0xFFFEE000u;
 constexpr std::uint32_t kItemEnd = 0xFFFEE00Du;
 constexpr std::uint32_t kSequenceEnd = 0xFFFEE0DDu;
 constexpr std::uint32_t kPixelData = 0x7FE00010u;
+constexpr std::array<std::string_view, 13> kLongKinds = {"OB", "OD", "OF", "OL", "OV", "OW", "SQ",
+                                                         "SV", "UC", "UN", "UR", "UT", "UV"};
+constexpr std::array<std::string_view, 22> kShortKinds = {"??", "AE", "AS", "AT", "CS", "DA", "DS", "DT",
+                                                          "FD", "FL", "IS", "LO", "LT", "PN", "SH", "SL",
+                                                          "SS", "ST", "TM", "UI", "UL", "US"};
 constexpr int kDeepest = 16;
 constexpr std::size_t kFirstElement = 132;
 
@@ -31,6 +36,7 @@ struct Element {
   std::uint32_t tag = 0;
   std::uint32_t length = 0;
   std::string kind;         ///< value representation; empty where implicit
+  bool known = true;        ///< whether there is such a kind
   std::uint64_t value = 0;  ///< its offset in the file
 };
 
@@ -53,36 +59,56 @@ class DicomWalker {
     at_ += 8;
     if (!bare) {
       e.kind = {start.get<char>(4), start.get<char>(5)};
-      static constexpr std::array<std::string_view, 13> kLong = {"OB", "OD", "OF", "OL", "OV", "OW", "SQ",
-                                                                 "SV", "UC", "UN", "UR", "UT", "UV"};
-      if (std::find(kLong.begin(), kLong.end(), e.kind) != kLong.end()) {
+      if (is_one_of(e.kind, kLongKinds)) {
         e.length = bytes(at_, 4).get<std::uint32_t>(0);
         at_ += 4;
       } else {
         e.length = start.get<std::uint16_t>(6);
+        e.known = is_one_of(e.kind, kShortKinds);
       }
     }
     e.value = at_;
     return e;
   }
 
-  /// Goes behind the element's value.
+  /// Goes behind the element's value. GDCM makes room for what any element's length says, of those within it too.
   void skip(const Element& element, int depth = 0) {
+    if (depth > kDeepest)
+      throw InvalidInput(fmt::format("{}: DICOM sequences nested more than {} deep", path_, kDeepest));
     if (element.length != kUndefined) {
       if (element.length > size_ - at_)
         throw IoError(
             fmt::format("{}: a DICOM element of {} bytes at {}, the file has {}", path_, element.length, at_, size_));
-      at_ += element.length;
+      const std::uint64_t end = at_ + element.length;
+      const bool has_elements = holds_elements(element);
+      while (has_elements && at_ + 8 <= end) {
+        const Element inner = next();
+        if (!inner.known) break;  // somebody's own way of writing it
+        skip(inner, depth + 1);
+      }
+      at_ = std::max(at_, end);
       return;
     }
-    if (depth > kDeepest)
-      throw InvalidInput(fmt::format("{}: DICOM sequences nested more than {} deep", path_, kDeepest));
     // Unknown values of undefined length are implicit inside, whatever is around them.
     const bool outer = implicit_;
+    const bool in_fragments = fragments_;
     if (element.kind == "UN") implicit_ = true;
+    if (element.kind == "OB" || element.kind == "OW") fragments_ = true;
     for (Element inner = next(); inner.tag != kSequenceEnd && inner.tag != kItemEnd; inner = next())
       skip(inner, depth + 1);
     implicit_ = outer;
+    fragments_ = in_fragments;
+  }
+
+  /// What is left of the file. To GDCM zeros are elements, and fewer than four bytes nothing.
+  void check_rest() {
+    while (size_ - at_ >= 4) {
+      const std::uint64_t place = at_;
+      const Element e = next();
+      if (!e.known && (e.tag != 0 || e.length != 0))
+        throw InvalidInput(fmt::format("{}: at byte {}, behind the pixel data, is no DICOM element", path_, place));
+      skip(e);
+    }
   }
 
   [[nodiscard]] std::string text(const Element& e) {
@@ -97,6 +123,17 @@ class DicomWalker {
   void go_to(std::uint64_t offset) { at_ = offset; }
 
  private:
+  template <std::size_t n>
+  static bool is_one_of(std::string_view kind, const std::array<std::string_view, n>& kinds) {
+    return std::find(kinds.begin(), kinds.end(), kind) != kinds.end();
+  }
+  /// A sequence's items do, and where nothing says what is a sequence, GDCM goes by how it begins.
+  [[nodiscard]] bool holds_elements(const Element& e) {
+    if (e.tag == kItem || e.kind == "SQ") return !fragments_;
+    if (!e.kind.empty() || e.tag == kPixelData || e.length < 8) return false;
+    const HeaderBytes start = bytes(e.value, 4);
+    return (std::uint32_t(start.get<std::uint16_t>(0)) << 16 | start.get<std::uint16_t>(2)) == kItem;
+  }
   std::string raw(const Element& e, std::uint32_t most) {
     const std::uint64_t count = std::min(e.length, most);
     (void)bytes(e.value, count);
@@ -119,6 +156,7 @@ class DicomWalker {
   std::uint64_t size_;
   std::uint64_t at_ = kFirstElement;
   bool implicit_ = false;
+  bool fragments_ = false;  ///< in compressed pixels, whose items are no elements
 };
 
 bool has_mark(const std::string& path) {
@@ -223,6 +261,7 @@ void check_pixels(const std::string& path, const Element& e, const DicomImage& i
   // GDCM makes room for what the length says, and looks for it for long.
   if (e.length > walker.bytes_behind(e))
     throw IoError(fmt::format("{}: pixel data of {} bytes, the file has {} behind their head", path, e.length, found));
+  walker.skip(e);
 }
 
 }  // namespace
@@ -242,6 +281,7 @@ CheckedHeader check_dicom(const std::string& path, const ReadOptions& options) {
     if (e.tag == kPixelData) {
       check_image(path, image, options);
       check_pixels(path, e, image, walker);
+      walker.check_rest();
       return {.size = {int(image.columns), int(image.rows), 1}, .type = {}, .data = {}};
     }
     walker.go_to(e.value);

@@ -180,6 +180,41 @@ TEST_F(Itk, RefusesDicomWithoutItsMark) {
   EXPECT_THAT(refused("a.dcm", std::string(132, 'x') + bytes.substr(132)), HasSubstr("the mark DICM"));
 }
 
+// An element of which the head says a kind and a length.
+std::string head(std::uint16_t group, const std::string& kind, std::uint32_t length) {
+  const std::string tag = test::bytes_of<std::uint16_t>({group, 0x10});
+  return tag + kind + std::string(2, '\0') + test::bytes_of<std::uint32_t>({length});
+}
+
+// GDCM takes gigabytes for it wherever it stands.
+TEST_F(Itk, RefusesDicomElementsThatAreLongerThanTheFile) {
+  const std::string bytes = test::dicom_sample({});
+  const std::string item = test::bytes_of<std::uint16_t>({0xFFFE, 0xE000});
+  const std::string eight(8, 'x');
+  const std::string element = head(0x31, "OB", 0x70000000) + eight;
+  const std::string end = test::bytes_of<std::uint16_t>({0xFFFE, 0xE0DD, 0, 0});
+  for (const std::string& bad :
+       {element, head(0x31, "SQ", 16) + item + test::bytes_of<std::uint32_t>({0x70000000}) + eight,
+        head(0x31, "SQ", 28) + item + test::bytes_of<std::uint32_t>({20}) + element,
+        head(0x31, "SQ", 0xFFFFFFFF) + item + test::bytes_of<std::uint32_t>({20}) + element + end}) {
+    const std::size_t pixels = bytes.rfind(test::bytes_of<std::uint16_t>({0x7FE0, 0x10}));
+    for (const std::size_t at : {pixels, bytes.size()})
+      EXPECT_THAT(refused("a.dcm", std::string(bytes).insert(at, bad)),
+                  HasSubstr("a DICOM element of 1879048192 bytes"));
+  }
+}
+
+TEST_F(Itk, ReadsDicomWithMoreBehindItsPixels) {
+  const std::string bytes = test::dicom_sample({});
+  const std::string item = test::bytes_of<std::uint16_t>({0xFFFE, 0xE000}) + test::bytes_of<std::uint32_t>({20});
+  const auto read = [&](const std::string& tail) { return test::reading_error(folder_.write("a.dcm", bytes + tail)); };
+  for (const std::string& tail : {std::string(3, 'x'), std::string(16, '\0'), head(0xFFFC, "OB", 4) + "abcd",
+                                  head(0x7FE1, "SQ", 28) + item + head(0x31, "OB", 8) + "12345678"})
+    EXPECT_EQ(read(tail), "") << tail.size();
+  EXPECT_THAT(read(std::string(5, '\0')), HasSubstr("a.dcm: the DICOM header ends early"));
+  EXPECT_THAT(read(head(0x7FE1, "BO", 0xFFF0)), HasSubstr("behind the pixel data, is no DICOM element"));
+}
+
 // GDCM takes seconds and gigabytes for it.
 TEST_F(Itk, RefusesDicomPixelsThatAreLongerThanTheFile) {
   for (const std::uint32_t length : {0xFFFFFFFEu, 0xFFFFFFFFu, 14u}) {
