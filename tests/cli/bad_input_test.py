@@ -1,6 +1,7 @@
 """Bad input: one line on stderr, the right exit status, no output file left."""
 import math
 import os
+import re
 import struct
 import unittest
 
@@ -153,6 +154,10 @@ class BadVolume(CommandLineTest):
         self.bake("gen:sphere:1e9", says="1e9")
         self.bake("gen:sphere:99999", says="99999")
 
+    def test_spacings_beyond_a_fit_are_told_in_words(self):
+        self.fail(1, "bake", "gen:gyroid:8", "--spacing", "1e-37,1,1", "-o", "light.nrrd", "--resampler", "fit", "--bounces", 0, "--rays", 4, "--quiet",
+                  says=("spacings", "orders of magnitude"))
+
 
 class BadScene(CommandLineTest):
     def test_is_named_with_its_key(self):
@@ -188,6 +193,11 @@ class BadScene(CommandLineTest):
         self.fail(1, "bake", "gen:sphere:8", "-o", "light.nrrd", "--scene", "gone.json", says="gone.json")
         self.write("scene.json", '{"environment": {"type": "image", "file": "gone.hdr"}}')
         self.fail(1, "bake", "gen:sphere:8", "-o", "light.nrrd", "--scene", "scene.json", says="gone.hdr")
+
+    def test_light_beyond_floats_is_laid_to_the_scene(self):
+        self.write("scene.json", '{"emission": [1e38, 1e38, 1e38]}')
+        self.fail(1, "bake", "gen:gyroid:8", "-o", "light.nrrd", "--scene", "scene.json", "--rays", 4, "--quiet",
+                  says=("radiance is infinite", "the scene's radiance, irradiance or emission"))
 
     def test_a_picture_that_ends_early_is_not_half_black(self):
         self.write("scene.json", '{"environment": {"type": "image", "file": "sky.hdr"}}')
@@ -235,6 +245,19 @@ class BadLight(CommandLineTest):
         self.succeed("convert", "gen:sphere:8", "light.nrrd")
         self.fail(1, "probe", "gen:sphere:8", "--light", "light.nrrd", "--points", "points.csv", "-o", "o.csv",
                   says=("light.nrrd", "isolux.volume_sha256"))
+
+    def test_with_a_header_that_nobody_can_use_is_named_with_the_key(self):
+        self.write("points.csv", "0.5,0.5,0.5\n")
+        self.succeed("bake", "gen:gyroid:8", "-o", "light.nrrd", "--rays", 4, "--quiet", "--resampler", "fit")
+        for key, value, word in (("light_ceiling", b"-1", "-1"), ("light_ceiling", b"1e39", "1e39"), ("near_field", b"0 .5 .1 .1 .1", "a step of 0"),
+                                 ("near_field", b"1e-320 .5 .1 .1 .1", "negatives"), ("near_field", b"1 .5 nan .1 .1", "nan")):
+            line = b"\nisolux." + key.encode() + b":="
+            self.assertIn(line, self.read("light.nrrd"))
+            self.write("bad.nrrd", re.sub(line + b"[^\n]*", line + value, self.read("light.nrrd")))
+            for more in (("probe", "--points", "points.csv", "-o", "o.csv"), ("render", "--iso", 0, "-o", "o.png")):
+                self.fail(1, more[0], "gen:gyroid:8", "--light", "bad.nrrd", *more[1:], says=("bad.nrrd", "isolux." + key, word, "wanted" if word == "nan" else "allowed"))
+        self.write("bad.nrrd", self.read("light.nrrd").replace(b'"outer":"lower"', b'"outer":"lowex"'))
+        self.fail(1, "render", "gen:gyroid:8", "--light", "bad.nrrd", "--iso", 0, "-o", "o.png", says=("bad.nrrd", "isolux.scene.outer", "lowex"))
 
     def test_of_errors_is_no_light(self):
         self.succeed("bake", "gen:sphere:8", "-o", "light.nrrd", "--error-grid", "error.nrrd", "--rays", 2, "--quiet")

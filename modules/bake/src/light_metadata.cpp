@@ -18,7 +18,6 @@ namespace isolux {
 namespace {
 
 constexpr const char* kQuantity = "irradiance/pi";
-constexpr const char* kSceneName = "isolux.scene of the light";
 
 nlohmann::json choice_to_json(const BackendChoice& choice) {
   nlohmann::json json{{"name", choice.name}};
@@ -26,15 +25,21 @@ nlohmann::json choice_to_json(const BackendChoice& choice) {
   return json;
 }
 
+/// What messages call a light's scene.
+std::string scene_name(const LightFile& light) {
+  return light.path.empty() ? "isolux.scene of the light" : light.path + ": isolux.scene";
+}
+
 /// The scene in the light's header; nothing if there is none, as in a light that somebody else made.
 std::optional<Scene> scene_of(const LightFile& light) {
   const auto it = light.metadata.find("isolux.scene");
   if (it == light.metadata.end()) return std::nullopt;
   // An image environment is described, not repeated: what shading needs is the albedo and the outer side.
-  auto json = parse_json(it->second, kSceneName);
-  if (!json.is_object()) throw InvalidInput(fmt::format("{}: not a JSON object", kSceneName));
+  const std::string name = scene_name(light);
+  auto json = parse_json(it->second, name);
+  if (!json.is_object()) throw InvalidInput(fmt::format("{}: not a JSON object", name));
   json.erase("environment");
-  return parse_scene(json.dump(), "", kSceneName);
+  return parse_scene(json.dump(), "", name);
 }
 
 /// Whether the environment of a scene, which may be anything, is an image.
@@ -124,7 +129,7 @@ std::optional<Scene> light_scene(const LightFile& light) {
   if (it == light.metadata.end()) return std::nullopt;
   const auto json = nlohmann::json::parse(it->second, nullptr, false);
   if (!json.is_object() || has_image(json)) return std::nullopt;
-  return parse_scene(it->second, "", kSceneName);
+  return parse_scene(it->second, "", scene_name(light));
 }
 
 SurfaceColour surface_colour(const Scene& scene, float isovalue) {

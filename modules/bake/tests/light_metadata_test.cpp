@@ -26,6 +26,23 @@ TEST(LightMetadata, ScenesThatAreNoneAreRefusedInWords) {
   EXPECT_THROW((void)light_outer(light_with("isolux.scene", "no JSON")), InvalidInput);
 }
 
+TEST(LightMetadata, ScenesThatAreRefusedNameTheirFile) {
+  LightFile light = light_with("isolux.scene", R"({"outer": "lowex"})");
+  const auto expect_named = [&](const std::string& name) {
+    for (const bool all : {true, false}) {
+      try {
+        all ? static_cast<void>(light_scene(light)) : static_cast<void>(light_outer(light));
+        ADD_FAILURE() << "it is taken";
+      } catch (const InvalidInput& error) {
+        EXPECT_EQ(std::string(error.what()), name + ".outer: 'lowex'; allowed are lower, higher");
+      }
+    }
+  };
+  expect_named("isolux.scene of the light");
+  light.path = "l.nrrd";
+  expect_named("l.nrrd: isolux.scene");
+}
+
 TEST(LightMetadata, AnImageEnvironmentIsNotTold) {
   const LightFile light = light_with("isolux.scene", R"({"environment": {"type": "image"}, "outer": "higher"})");
   EXPECT_FALSE(light_scene(light).has_value());

@@ -17,18 +17,19 @@ bool is_finite(const Vec3f& v) { return (int(is_finite(v.x)) & int(is_finite(v.y
 
 /// `values`: `each` a sample.
 template <class Value>
-void require_finite(const char* what, const std::vector<Value>& values, std::size_t each = 1) {
+void require_finite(const char* what, const std::vector<Value>& values, std::size_t each = 1, const char* hint = "") {
   int all = 1;  // without a branch, so that vectors do it: a sample has a dozen numbers
   for (const Value& value : values) all &= int(is_finite(value));
   if (all != 0) return;
   const auto bad = std::find_if(values.begin(), values.end(), [](const Value& value) { return !is_finite(value); });
-  throw InvalidInput(fmt::format("sample {}: its {} is infinite or not a number; it must be finite",
-                                 std::size_t(bad - values.begin()) / each, what));
+  throw InvalidInput(fmt::format("sample {}: its {} is infinite or not a number; it must be finite{}",
+                                 std::size_t(bad - values.begin()) / each, what, hint));
 }
 
 void require_finite_light(const SampleSet& samples) {
   require_finite("position", samples.sites.positions);
-  require_finite("radiance", samples.radiance, std::size_t(samples.channels));
+  require_finite("radiance", samples.radiance, std::size_t(samples.channels),
+                 "; the scene's radiance, irradiance or emission may be too large for floats");
 }
 
 }  // namespace

@@ -267,6 +267,7 @@ LightFile read_light(const std::string& path) {
   detail::NrrdHeader header = detail::read_nrrd_header(path, {});
   const ChannelAxis axis = channel_axis(path, header);
   LightFile light;
+  light.path = path;
   light.grid.channels = int(axis.channels);
   light.grid.lattice = detail::nrrd_frame(header, std::span(header.axes).last(3)).lattice;
   auto values = std::get<std::vector<float>>(detail::read_nrrd_values(header, {}, {}).list);

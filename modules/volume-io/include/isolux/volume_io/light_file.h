@@ -15,6 +15,7 @@ struct LightFile {
   IlluminationGrid grid;  ///< of the outer side
   std::map<std::string, std::string> metadata;
   std::optional<IlluminationGrid> inner{};  ///< of the inner side, if both were lit; laid out as `grid`
+  std::string path{};                       ///< the file that it was read from; empty for a light that was made
 };
 
 /// The light of one side. \throw InvalidInput if the light does not have it; `path` names it
