@@ -60,6 +60,10 @@ class StandardStreams(CommandLineTest):
         self.assertFalse(any(ord(c) < 32 for c in line.rstrip("\n")), repr(line[:100]))
         self.assertLess(len(line), 1200)
 
+    def test_get_whole_lines_of_text_with_zero_bytes(self):
+        self.write("nul.json", '{"a\\u0000bcd": 1}')
+        self.fail(1, "bake", "gen:sphere:8", "-o", "l.nrrd", "--scene", "nul.json", says=("unknown key 'a bcd'", "environment"))
+
     def test_take_names_that_are_not_unicode(self):
         name = os.path.join(os.fsencode(self.folder), b"caf\xe9_2x2x2_uint8.raw")
         with open(name, "wb") as file:

@@ -84,6 +84,6 @@ void Session::say(const std::string& line) const {
   if (!quiet_) tell(line + "\n");
 }
 
-void Session::warn(const std::string& line) const { tell("isolux: warning: " + line + "\n"); }
+void Session::warn(const std::string& line) const { isolux::warn(line); }
 
 }  // namespace isolux

@@ -15,6 +15,13 @@ constexpr std::size_t kLongestMessage = 1000;
 [[noreturn]] void refuse_output() {
   throw IoError(fmt::format("standard output: writing failed: {}", reason_of(errno)));
 }
+
+void blank_control_characters(std::string& text) {
+  for (char& c : text) {
+    const auto code = static_cast<unsigned char>(c);
+    if (code < 0x20 || code == 0x7F) c = ' ';
+  }
+}
 }  // namespace
 
 void open_standard_streams() {
@@ -32,11 +39,13 @@ void tell(const std::string& text) {
 void complain(const std::string& what, std::string why) {
   // The line of a binary file that was read as a header may be endless.
   if (why.size() > kLongestMessage) why.replace(kLongestMessage / 2, why.size() - kLongestMessage, " ... ");
-  for (char& c : why) {
-    const auto code = static_cast<unsigned char>(c);
-    if (code < 0x20 || code == 0x7F) c = ' ';
-  }
+  blank_control_characters(why);
   tell(fmt::format("isolux: error: {}: {}\n", what, why));
+}
+
+void warn(std::string what) {
+  blank_control_characters(what);
+  tell(fmt::format("isolux: warning: {}\n", what));
 }
 
 void put_out(const std::string& text) {

@@ -14,6 +14,9 @@ void tell(const std::string& text);
 /// One line on stderr, `isolux: error: WHAT: WHY`; control characters, such as a broken file's, become blanks.
 void complain(const std::string& what, std::string why);
 
+/// One line on stderr, `isolux: warning: WHAT`, likewise.
+void warn(std::string what);
+
 /// Text for programs, on standard output; flush_output() says whether it got there. \throw IoError if it is known
 /// already
 void put_out(const std::string& text);

@@ -8,7 +8,8 @@ namespace isolux {
 /// Base of everything isolux throws. The message is one line: what was given and what is allowed.
 class Error : public std::runtime_error {
  public:
-  using std::runtime_error::runtime_error;
+  /// Zero bytes of a broken file's text become blanks: what() would end there.
+  explicit Error(std::string message);
 };
 
 /// A value, option, name or file content that cannot be used.
