@@ -45,6 +45,14 @@ class FullDisk(CommandLineTest):
 
 
 class StandardStreams(CommandLineTest):
+    def test_of_output_that_are_closed_are_an_error_where_something_is_said(self):
+        for command in ("info gen:sphere:4", "info gen:sphere:4 --json --report info.json", "backends", "backends --json", "--version", "--help"):
+            for closed in (">&-", "<&- >&-"):
+                done = subprocess.run(f"'{ISOLUX}' {command} {closed}", shell=True, cwd=self.folder, stderr=subprocess.PIPE, text=True)
+                self.assertEqual(done.returncode, 1, command)
+                self.assertRegex(done.stderr, r"^isolux: error: [\w ]+: standard output: writing failed: Bad file descriptor\n$")
+        self.assertIn("seconds", self.report("info.json"))  # and nothing else is in there
+
     def test_that_are_closed_or_full_lose_no_work(self):
         bake = f"'{ISOLUX}' bake gen:sphere:12 --rays 4 -o "
         subprocess.run(bake + "usual.nrrd", shell=True, cwd=self.folder, check=True, capture_output=True)

@@ -27,7 +27,8 @@ void blank_control_characters(std::string& text) {
 void open_standard_streams() {
   // open() takes the lowest number that is free.
   for (int stream = 0; stream <= 2; ++stream) {
-    if (fcntl(stream, F_GETFD) < 0 && errno == EBADF) static_cast<void>(open("/dev/null", O_RDWR));
+    if (fcntl(stream, F_GETFD) >= 0 || errno != EBADF) continue;
+    static_cast<void>(open("/dev/null", stream == 1 ? O_RDONLY : O_RDWR));
   }
 }
 

@@ -5,7 +5,8 @@
 namespace isolux {
 
 /// Opens /dev/null in the place of standard streams that the caller closed: a file opened later would take their number
-/// and get our messages.
+/// and get our messages. What is written to standard output then fails: a script that asks for it is told that it is
+/// lost.
 void open_standard_streams();
 
 /// Text for people, on stderr. One that is gone or full is no reason to lose work: nothing is thrown.
