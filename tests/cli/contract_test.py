@@ -104,6 +104,9 @@ class Bake(CommandLineTest):
     def test_an_error_target_is_met(self):
         self.bake("--rmse", 0.01, "--report", "report.json", volume="gen:two-spheres:12", rays=16)
         self.assertLess(self.report()["rmse_estimate"], 0.0115)
+        # Whoever asked for an error hears that it is missed, as of a --time.
+        missed = self.succeed("bake", "gen:noise:6", "-o", "noise.nrrd", "--samples", 20, "--rmse", 0.001, "--bounces", 0, "--quiet")
+        self.assertRegex(missed.stderr, r"^isolux: warning: the error asked is not reached: about \S+ of 0.001[^\n]*\n$")
         self.bake("--rmse", 0.02, "--error-grid", "error.nrrd", "--report", "report.json", volume="gen:gyroid:17")
         fields, _, data = nrrd_header(self.path("error.nrrd"))
         self.assertEqual(fields["isolux.quantity"], "standard error of irradiance/pi")

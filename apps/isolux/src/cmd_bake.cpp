@@ -72,7 +72,7 @@ void say_what_was_done(const BakeResult& result, const Session& session) {
     session.say(
         "read from texels, reflections would be wrong by more than the error asked: they are followed by paths");
   if (result.skipped.contains("rounds_beyond_memory"))
-    session.say("the error asked is not reached: more rays than can be kept; --bounce-method paths needs no memory");
+    session.warn("the error asked is not reached: more rays than can be kept; --bounce-method paths needs no memory");
 }
 
 /// Small volumes and rough light can end above what was asked.
@@ -86,7 +86,7 @@ void say_of_error(const BakeResult& result, double asked, const Session& session
         "; reading reflections from texels makes {:.4f} of it, which more texels or --bounce-method paths "
         "take away",
         result.reading_error);
-  session.say(fmt::format("the error asked is not reached: about {:.4f} of {}{}", result.rmse_estimate, asked, why));
+  session.warn(fmt::format("the error asked is not reached: about {:.4f} of {}{}", result.rmse_estimate, asked, why));
 }
 
 /// --texels auto
