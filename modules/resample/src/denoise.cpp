@@ -196,8 +196,7 @@ class Denoiser {
 
   void keep(std::size_t s, const wide::WindowFits& fits) {
     for (std::size_t w = 0; w < kWindows.size(); ++w)
-      std::copy_n(fits.is_fitted ? fits.light[w].data() : radiance(s), channels_,
-                  smooth_.of(s) + w * channels_);
+      std::copy_n(fits.is_fitted ? fits.light[w].data() : radiance(s), channels_, smooth_.of(s) + w * channels_);
     findings_.of(s)->variance = all_.look(s)[LatticeSamples::kVariance];
     if (fits.is_fitted) find(s, fits);
   }
@@ -246,7 +245,8 @@ class Denoiser {
       for (std::size_t c = 0; c < channels_; ++c) {
         double e = (known ? 1.0 : shares.back()) * double(radiance(s)[c]);
         for (std::size_t w = 0; w < kWindows.size(); ++w) e += shares[w] * double(smooth(w, s)[c]);
-        values[lit_.sites[s] * channels_ + c] = known ? float(e / double(unit_)) : std::max(0.0f, float(e / double(unit_)));
+        values[lit_.sites[s] * channels_ + c] =
+            known ? float(e / double(unit_)) : std::max(0.0f, float(e / double(unit_)));
       }
     });
   }

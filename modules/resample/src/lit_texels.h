@@ -20,7 +20,7 @@ struct LitTexels {
   std::vector<std::uint32_t> at;       ///< of each texel, its number among these, or largest where no site is there
   std::vector<std::uint32_t> of_site;  ///< the number of its texel; empty where each texel has one site at most
   std::vector<std::uint32_t> sites;    ///< the first of each
-  std::vector<std::uint32_t> layers;   ///< the number of the first texel of each of the grid's layers; of all at the end
+  std::vector<std::uint32_t> layers;  ///< the number of the first texel of each of the grid's layers; of all at the end
 
   /// `volume` is what the sites are in; the grid's axis a is the texels' axes[a], the first one its rows'. \throw
   /// InvalidInput for sites that are at no texel

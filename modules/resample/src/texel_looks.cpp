@@ -56,7 +56,8 @@ NoisyLight::NoisyLight(const std::vector<float>& radiance, const std::vector<flo
     const std::uint32_t s = texels.of_site[site];
     const float share = 1.0f / float(counts[s]);
     variances_[s] += share * share * (variance[site] * unit * unit);
-    for (std::size_t c = 0; c < channels; ++c) means_[s * channels + c] += share * (radiance[site * channels + c] * unit);
+    for (std::size_t c = 0; c < channels; ++c)
+      means_[s * channels + c] += share * (radiance[site * channels + c] * unit);
   }
 }
 
