@@ -277,6 +277,10 @@ CheckedHeader check_dicom(const std::string& path, const ReadOptions& options) {
   DicomImage image;
   while (!walker.at_end()) {
     const Element e = walker.next();
+    // GDCM loses its place there, and takes any bytes behind for lengths.
+    if (!e.known && e.tag >> 16 == 2)
+      throw InvalidInput(fmt::format("{}: a DICOM file's head with an element of the kind '{}', which there is not",
+                                     path, excerpt(e.kind)));
     take(path, e, walker, image);
     if (e.tag == kPixelData) {
       check_image(path, image, options);

@@ -204,6 +204,12 @@ TEST_F(Itk, RefusesDicomElementsThatAreLongerThanTheFile) {
   }
 }
 
+TEST_F(Itk, RefusesKindsThatThereAreNotInTheHeadOfDicom) {
+  std::string bytes = test::dicom_sample({});
+  bytes[bytes.find("UI", 132) + 1] = '#';
+  EXPECT_THAT(refused("a.dcm", bytes), HasSubstr("an element of the kind 'U#'"));
+}
+
 TEST_F(Itk, ReadsDicomWithMoreBehindItsPixels) {
   const std::string bytes = test::dicom_sample({});
   const std::string item = test::bytes_of<std::uint16_t>({0xFFFE, 0xE000}) + test::bytes_of<std::uint32_t>({20});
