@@ -13,6 +13,7 @@
 
 #include "checked_stages.h"
 #include "resampling_choice.h"
+#include "texel_readings.h"
 
 namespace isolux {
 namespace {
@@ -20,6 +21,9 @@ namespace {
 constexpr std::array<double, 6> kRatios = {0.25, 0.5, 0.75, 1.0, 1.5, 2.0};
 constexpr std::size_t kPoints = 1000;  // the rms of an error is known to some 5 percent
 constexpr int kPointRays = 256;
+/// A bake tells near-field weights by texels between two others that have light of their own. Where less of what is
+/// read is such light there are few, and nobody knows beforehand what they will say.
+constexpr double kOwnEnough = 0.75;
 constexpr int kTexelRays = 64;  // whatever the bake will spend: exact texels are asked about
 
 /// Random points of random level sets, the light there, and how much area of how many level sets each stands for.
@@ -54,68 +58,15 @@ Reference trace_reference(const Volume& volume, const Scene& scene, const BakeSe
   return reference;
 }
 
-/// The texels around every point, as sites.
-struct Corners {
-  struct Corner {
-    std::size_t point;
-    double weight;  ///< of the trilinear reading
-  };
-  Sites sites;
-  std::vector<Corner> corners;  ///< of each site
-};
-
-Corners corners_of(const Volume& volume, const Scene& scene, const Lattice& texels, const Sites& points,
-                   GradientKind gradient) {
-  const TrilinearField field(volume);
-  const IndexToWorld to_texels = index_to_index(volume.lattice(), texels);
-  const IndexToWorld to_volume = index_to_index(texels, volume.lattice());
-  Corners result;
-  for (std::size_t p = 0; p < points.size(); ++p) {
-    const Vec3 last = Vec3(texels.size - 1);
-    const Vec3 at = glm::clamp(to_texels.world(Vec3(points.positions[p])), Vec3(0.0), last);
-    const Vec3 low = glm::floor(at);
-    for (unsigned q = 0; q < 8; ++q) {
-      const Vec3 step(q & 1u, q >> 1 & 1u, q >> 2);
-      const Vec3 part = glm::mix(1.0 - (at - low), at - low, step);
-      const double weight = part.x * part.y * part.z;
-      if (weight == 0.0) continue;
-      const Vec3f position(to_volume.world(glm::min(low + step, last)));
-      const Vec3 normal = field.normal(Vec3(position), scene.outer, gradient);
-      if (normal == Vec3(0.0)) continue;
-      result.sites.positions.push_back(position);
-      result.sites.isovalues.push_back(float(field.value(Vec3(position))));
-      result.sites.normals.emplace_back(normal);
-      result.corners.push_back({p, weight});
-    }
+/// The mean over the reference's level sets.
+Vec3 usual_openness(const Reference& reference, const std::vector<Vec3f>& openness) {
+  Vec3 sum(0.0);
+  double total = 0.0;
+  for (std::size_t p = 0; p < openness.size(); ++p) {
+    sum += reference.weights[p] * Vec3(openness[p]);
+    total += reference.weights[p];
   }
-  return result;
-}
-
-/// What reading between the texels says at each point.
-struct Readings {
-  std::vector<double> light;     ///< as SampleSet::radiance
-  std::vector<double> variance;  ///< of that by rays
-  std::vector<Vec3> openness;    ///< of the texels, read like their light; empty if it is not asked for
-  std::vector<double> lit;       ///< the corners' share that has light; 0 where there is nothing to read
-};
-
-Readings read_between(const Corners& corners, const SampleSet& texels, const std::vector<Vec3f>& openness,
-                      std::size_t points) {
-  const auto channels = std::size_t(texels.channels);
-  Readings read{.light = std::vector<double>(points * channels),
-                .variance = std::vector<double>(points),
-                .openness = std::vector<Vec3>(openness.empty() ? 0 : points, Vec3(0.0)),
-                .lit = std::vector<double>(points)};
-  for (const auto& [point, weight] : corners.corners) read.lit[point] += weight;
-  for (std::size_t s = 0; s < texels.size(); ++s) {
-    const auto [point, weight] = corners.corners[s];
-    const double share = weight / read.lit[point];
-    for (std::size_t c = 0; c < channels; ++c)
-      read.light[point * channels + c] += share * double(texels.radiance[s * channels + c]);
-    read.variance[point] += share * share * double(texels.variance[s]);
-    if (!read.openness.empty()) read.openness[point] += share * Vec3(openness[s]);
-  }
-  return read;
+  return total > 0.0 ? sum / total : sum;
 }
 
 /// Judges readings against the reference.
@@ -124,11 +75,11 @@ class Judge {
   Judge(const Reference& reference, const Readings& read, const std::vector<Vec3f>& openness)
       : reference_(reference), read_(read), openness_(openness), channels_(std::size_t(reference.samples.channels)) {}
 
-  /// rms of reading less truth, the variance of both taken out; infinite where there is nothing to read. With
-  /// near-field terms, of a grid of so many texels, where they help.
+  /// rms of reading less truth, the variance of both taken out. With near-field terms, of a grid of so many texels,
+  /// where they help.
   [[nodiscard]] double error(std::size_t texels) const {
     const double plain = error_with([](std::size_t /*point*/, std::size_t /*channel*/) { return Vec3(0.0); });
-    if (openness_.empty()) return plain;
+    if (openness_.empty() || read_.own < kOwnEnough) return plain;
     // What a half of the points says of the weights is tried on the other half.
     std::array<std::vector<Vec3>, 2> weights;
     for (std::size_t half = 0; half < 2; ++half) weights[half] = near_field_weights(1 - half, 3.0 * double(texels));
@@ -150,7 +101,6 @@ class Judge {
     NearFieldFit fit;
     Vec3 squares(0.0);
     for (std::size_t p = half; p < reference_.samples.size(); p += 2) {
-      if (!(read_.lit[p] > 0.0)) continue;
       Vec3 missed(0.0);
       for (std::size_t c = 0; c < channels_; ++c) {
         missed[int(c)] = truth_beyond(p, c);
@@ -171,7 +121,6 @@ class Judge {
     double squares = 0.0;
     double total = 0.0;
     for (std::size_t p = 0; p < reference_.samples.size(); ++p) {
-      if (!(read_.lit[p] > 0.0)) continue;
       double square = 0.0;
       for (std::size_t c = 0; c < channels_; ++c) {
         const double missed = truth_beyond(p, c) - glm::dot(weights(p, c), openness_beyond(p));
@@ -239,15 +188,17 @@ TexelChoice choose_texels(const Volume& volume, const Scene& scene, const BakeSe
     return near_field ? openness_before(volume, sites) : std::vector<Vec3f>{};
   };
   const std::vector<Vec3f> openness = openness_of(reference.samples.sites);
+  const Vec3 usual = usual_openness(reference, openness);
   Run other = run;
   for (const double ratio : kRatios) {
     const Lattice texels = cell_lattice(volume.lattice(), texels_by_ratio(volume.lattice(), ratio));
-    Corners corners = corners_of(volume, scene, texels, reference.samples.sites, settings.trace.gradient);
-    ++other.seed;  // rays of a texel and of a point must not be the same ones
-    const std::vector<Vec3f> before_corners = openness_of(corners.sites);
-    const TraceResult traced = tracer->trace(volume, scene, std::move(corners.sites), rays, other);
+    TexelsAround around = texels_around(volume, scene.outer, texels, reference.samples.sites, settings.trace.gradient);
+    if (around.sites.size() == 0) continue;  // a bake would have none to trace
+    ++other.seed;                            // rays of a texel and of a point must not be the same ones
+    const std::vector<Vec3f> before_texels = openness_of(around.sites);
+    const TraceResult traced = tracer->trace(volume, scene, std::move(around.sites), rays, other);
     best.counters.rays += traced.counters.rays;
-    const Readings read = read_between(corners, traced.samples, before_corners, reference.samples.size());
+    const Readings read = read_between(around, traced.samples, before_texels, usual);
     const double error = Judge(reference, read, openness).error(texels.count());
     if (error < best.error) {
       best.texels = texels.size;

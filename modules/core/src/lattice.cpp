@@ -2,9 +2,11 @@
 #include <isolux/core/error.h>
 #include <isolux/core/lattice.h>
 
+#include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
+#include <limits>
 
 namespace isolux {
 
@@ -36,6 +38,23 @@ void require_spanning(const IndexToWorld& frame, std::string_view what) {
   const auto text = [](const Vec3& v) { return fmt::format("({}, {}, {})", v.x, v.y, v.z); };
   throw InvalidInput(fmt::format("{}: axes {}, {} and {} from origin {} span no volume", what, text(frame.axes[0]),
                                  text(frame.axes[1]), text(frame.axes[2]), text(frame.origin)));
+}
+
+void require_places(const Lattice& lattice, std::string_view what) {
+  constexpr double kMostOff = 1e-3;  // grid points
+  // World places are sums of steps along all axes. What these lose to rounding the way back makes larger.
+  const Mat3& axes = lattice.frame.axes;
+  const Mat3 back = glm::inverse(axes);
+  Vec3 reach(0.0);
+  for (int a = 0; a < 3; ++a) reach += glm::abs(axes[a]) * double(lattice.size[a]);
+  const Vec3 off = (glm::abs(back[0]) * reach.x + glm::abs(back[1]) * reach.y + glm::abs(back[2]) * reach.z) *
+                   std::numeric_limits<double>::epsilon();
+  if (std::max({off.x, off.y, off.z}) < kMostOff) return;
+  const auto text = [](const Vec3& v) { return fmt::format("({}, {}, {})", v.x, v.y, v.z); };
+  throw InvalidInput(
+      fmt::format("{}: axes {}, {} and {} are too unlike each other in length: world coordinates do not tell their "
+                  "grid points apart",
+                  what, text(axes[0]), text(axes[1]), text(axes[2])));
 }
 
 std::size_t require_countable(const Lattice& lattice) {

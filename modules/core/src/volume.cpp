@@ -132,6 +132,7 @@ void require_usable(const VolumeView& volume) {
         fmt::format("{}: {}x{}x{} grid points; every axis needs at least 2", volume.name(), size.x, size.y, size.z));
   }
   require_spanning(volume.lattice().frame, volume.name());
+  require_places(volume.lattice(), volume.name());
   require_float_corners(volume);
   if (const auto* floats = std::get_if<std::span<const float>>(&volume.voxels()))
     require_finite(volume.name(), size, *floats);

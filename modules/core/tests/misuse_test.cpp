@@ -46,6 +46,18 @@ TEST(Misuse, AxesThatSpanNoVolumeAreRefused) {
   EXPECT_THROW(require_spanning({.origin = Vec3(0, kNotANumber, 0), .axes = Mat3(1.0)}, "mine"), InvalidInput);
 }
 
+// What a short step adds to a place is lost where a long one is added to the same coordinate.
+TEST(Misuse, AxesThatDoNotTellGridPointsApartAreRefused) {
+  const auto require = [](const Vec3& x, const Vec3& y, const Vec3& z) {
+    require_places({.size = Index3(100), .frame = {.origin = Vec3(1e7), .axes = Mat3(x, y, z)}}, "mine");
+  };
+  EXPECT_NO_THROW(require({1e-20, 0, 0}, {0, 1e20, 0}, {0, 0, 1}));
+  EXPECT_NO_THROW(require({1e-3, 0, 0}, {0, 1, 0}, {-0.3, 0, 1}));
+  EXPECT_NO_THROW(require({0.6e-6, 0.8e-6, 0}, {-0.8, 0.6, 0}, {0, 0, 1}));
+  EXPECT_THROW(require({1e-20, 0, 0}, {0, 2, 0}, {-0.26, 0, 3}), InvalidInput);
+  EXPECT_THROW(require({0.6e-13, 0.8e-13, 0}, {-0.8, 0.6, 0}, {0, 0, 1}), InvalidInput);
+}
+
 TEST(Misuse, PlacesThatAreNoNumbersCountAsTheAxisBeginning) {
   const Volume volume = rising_volume();
   const TrilinearField field(volume);

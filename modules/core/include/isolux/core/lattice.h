@@ -46,6 +46,9 @@ struct Lattice {
 /// \throw InvalidInput, naming `what`, unless the axes span a volume: numbers whose determinant is not 0, with lengths
 /// that can be told from it
 void require_spanning(const IndexToWorld& frame, std::string_view what);
+/// \throw InvalidInput, naming `what`, unless a grid point's place in the world, from the origin, gives the point back
+/// to a thousandth of a step: an axis may be 1e20 times shorter than the others along the world's axes, not across them
+void require_places(const Lattice& lattice, std::string_view what);
 /// lattice.count(). \throw InvalidInput for sizes below 0 and more points than memory can be asked for (2^48)
 [[nodiscard]] std::size_t require_countable(const Lattice& lattice);
 /// \throw InvalidInput unless there is one value a point

@@ -93,7 +93,7 @@ struct ValueRange {
 [[nodiscard]] ValueRange value_range(const VolumeView& volume);
 
 /// \throw InvalidInput, naming the volume, if an axis has fewer than two grid points, a value is not finite, the axes
-/// span no volume or leave what floats hold: what every stage after reading relies on.
+/// span no volume, do not tell grid points apart or leave what floats hold: what every stage after reading relies on.
 void require_usable(const VolumeView& volume);
 
 }  // namespace isolux
