@@ -32,6 +32,8 @@ constexpr int kMostRounds = 24;
 constexpr double kSitesEnough = 2.0;
 /// Rays of a site at a texel whose ends they are iterated over.
 constexpr int kEndsEnough = 16;
+/// From a larger albedo on it is better that pockets read no light from outside (docs/tracer.md, "Pockets").
+constexpr float kPocketAlbedo = 0.98f;
 /// Sites whose places are made again at once.
 constexpr std::size_t kSamplesAPart = std::size_t(1) << 18;
 
@@ -89,6 +91,7 @@ KeptRays::KeptRays(const Volume& volume, const Scene& scene, const BakeSettings&
                              .outer = scene.outer,
                              .ends = settings_.trace.bounces == 0 ? LinkEnds::kDropped : LinkEnds::kKept,
                              .texels = reflecting_,
+                             .parts_pockets = largest_albedo(scene) > kPocketAlbedo,
                              .nets = has_target(settings_) ? RayNets::kIndependent : RayNets::kInterleaved};
   links_ = std::make_unique<LightLinks>(volume, std::move(found.sites), request, run);
   trace_seconds_ = watch.seconds();

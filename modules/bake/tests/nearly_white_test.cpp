@@ -31,17 +31,33 @@ double light_within(float albedo, BakeResult& result) {
 }
 
 TEST(NearlyWhite, ClosedSpacesStayLit) {
-  // Read from texels light goes from level set to level set, out at last to where the sphere is open: less than 1, the
-  // more so the longer it stays. The estimate says so. Bounded by the open sites alone it was .06.
+  // Read from texels whatever they are, light went from level set to level set, out at last to where the sphere is
+  // open: e was .6 to .9.
   for (const float albedo : {0.99f, 0.9991f}) {
     SCOPED_TRACE(albedo);
     BakeResult result;
-    const double e = light_within(albedo, result);
-    EXPECT_GT(e, 0.6);
-    EXPECT_LT(e, 1.05);
-    EXPECT_GT(result.rmse_estimate, 0.25 * (1.0 - e));
-    EXPECT_GT(result.reading_error, 0.2 * (1.0 - e));
+    EXPECT_NEAR(light_within(albedo, result), 1.0, 0.02);  // what is left to come when iteration ends
   }
+}
+
+TEST(NearlyWhite, PocketsAreDarkAndOpenSpacesWhite) {
+  // The white furnace (theory.md, 1). Close to the largest closed sphere (radius .5) there are ways out that a thousand
+  // reflections do not find.
+  Scene scene;
+  scene.albedo = {.keys = {{0.0f, Vec3f(1.0f)}}};
+  const BakeResult result = bake(read_volume("gen:cavity:17"), scene, {}, builtin_stages(), isolux::Run{});
+  const Lattice& texels = result.light.lattice;
+  for (int z = 0; z < texels.size.z; ++z)
+    for (int y = 0; y < texels.size.y; ++y)
+      for (int x = 0; x < texels.size.x; ++x) {
+        const double radius = glm::length(texels.frame.world(Vec3(x, y, z)) - Vec3(0.5));
+        const double e = double(result.light.values[texels.offset(x, y, z)]);
+        if (radius < 0.48) {
+          EXPECT_EQ(e, 0.0) << radius;
+        } else if (radius > 0.55) {
+          EXPECT_NEAR(e, 1.0, 0.01) << radius;
+        }
+      }
 }
 
 TEST(NearlyWhite, FurnacesDoNotOvershoot) {

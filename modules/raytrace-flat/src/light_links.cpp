@@ -30,7 +30,10 @@ LightLinks::LightLinks(const Volume& volume, Sites sites, const LinkSettings& se
     : LightLinks(volume, std::move(sites), settings, run, WithoutProbes{}) {
   const Lattice texels = settings.texels.value_or(cell_lattice(volume.lattice()));
   std::shared_ptr<LinkTargets> targets;
-  if (settings.ends == LinkEnds::kKept) targets = std::make_shared<LinkTargets>(volume, sites_, texels, run);
+  if (settings.ends == LinkEnds::kKept) {
+    targets = std::make_shared<LinkTargets>(volume, sites_, texels, run);
+    if (settings.parts_pockets) targets->part_pockets(volume, sites_, settings.outer, run);
+  }
   if (settings.ends == LinkEnds::kAtTexels)
     targets = std::make_shared<LinkTargets>(volume, texels, LinkTargets::Weights::kByIsovalue, run);
   rounds_->targets = targets;

@@ -114,7 +114,7 @@ class BlockMaker {
       ends.push_back(
           {.index = origin + gathered.index_distance[i] * direction, .ray = std::uint32_t(round_.first + k)});
     }
-    targets_->append_targets(ends, sites_.isovalues[site], LinkTargets::draws_of(seed_, site), targets);
+    targets_->append_targets(ends, origin, sites_.isovalues[site], LinkTargets::draws_of(seed_, site), targets);
   }
 
   const Sites& sites_;

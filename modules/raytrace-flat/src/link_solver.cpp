@@ -117,9 +117,7 @@ void LightLinks::Solver::clamp_light(const std::vector<float>& most, const std::
 
 bool LightLinks::Solver::is_nearly_white() const {
   if (!reads_sites()) return false;  // else what is read between texels may lie beyond them
-  float most = 0.0f;
-  for (const auto& key : scene_.albedo.keys) most = std::max({most, key.colour.x, key.colour.y, key.colour.z});
-  return most >= kNearlyWhite;
+  return largest_albedo(scene_) >= kNearlyWhite;
 }
 
 std::vector<float> LightLinks::Solver::most_light() {

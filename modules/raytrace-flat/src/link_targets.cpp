@@ -9,6 +9,7 @@
 #include <isolux/core/spread_labels.h>
 
 #include <algorithm>
+#include <atomic>
 #include <glm/common.hpp>
 #include <optional>
 
@@ -16,6 +17,8 @@ namespace isolux {
 namespace {
 
 constexpr std::size_t kEndsAPart = wide::CornerDraws::kMost;
+/// What texels in pockets count for those outside, and the other way: next to nothing, where there are others.
+constexpr float kAcross = 1e-12f;
 
 }  // namespace
 
@@ -73,6 +76,26 @@ LinkTargets::LinkTargets(const Volume& volume, const Sites& sites, const Lattice
   isovalues_ = own_isovalues_;
 }
 
+void LinkTargets::part_pockets(const Volume& volume, const Sites& sites, OuterSide outer, const Run& run) {
+  if (!are_sites_) return;
+  pass_levels_.emplace(volume, outer, run);
+  in_pocket_.resize(texels_.count());
+  std::atomic<bool> any = false;
+  parallel_blocks(in_pocket_.size(), 8192, run, "", [&](const Block& block) {
+    bool found = false;
+    for (std::size_t t = block.begin; t < block.end; ++t) {
+      const std::size_t site = site_of_texel_.empty() ? t : site_of_texel_[t];
+      const bool is_in = pass_levels_->is_closed(sites.positions[site], sites.isovalues[site]);
+      in_pocket_[t] = is_in ? 1 : 0;
+      found |= is_in;
+    }
+    if (found) any = true;
+  });
+  if (any) return;
+  pass_levels_.reset();
+  release(in_pocket_);
+}
+
 bool LinkTargets::find_sites(const Sites& sites, const Run& run) {
   site_of_texel_.assign(texels_.count(), kNoLabel);
   for (std::size_t s = 0; s < sites.size(); ++s) {
@@ -95,8 +118,10 @@ LinkTargets::Draws LinkTargets::draws_of(std::uint64_t seed, std::size_t site) {
   return {{std::uint32_t(a), std::uint32_t(a >> 32), std::uint32_t(b)}};
 }
 
-void LinkTargets::append_targets(std::span<const End> ends, float isovalue, const Draws& draws,
+void LinkTargets::append_targets(std::span<const End> ends, const Vec3f& from, float isovalue, const Draws& draws,
                                  std::vector<std::uint32_t>& targets) const {
+  const bool in_pocket = pass_levels_ && pass_levels_->is_closed(from, isovalue);
+  const std::uint32_t own = in_pocket_.empty() ? kNoLabel : texel_at(from);
   // All ends are asked for before the first is looked at: they lie far apart in memory.
   static thread_local std::vector<wide::CornerDraws> parts;
   const auto count_of = [&](std::size_t p) { return std::min(kEndsAPart, ends.size() - p * kEndsAPart); };
@@ -105,7 +130,10 @@ void LinkTargets::append_targets(std::span<const End> ends, float isovalue, cons
   const std::size_t before = targets.size();
   targets.resize(before + ends.size());
   for (std::size_t p = 0; p < parts.size(); ++p)
-    draw_texels(parts[p], count_of(p), isovalue, &targets[before + p * kEndsAPart]);
+    draw_texels(parts[p], count_of(p), isovalue, in_pocket, &targets[before + p * kEndsAPart]);
+  // Where none of the eight is of its kind, a site is.
+  for (std::size_t i = before; own != kNoLabel && i < targets.size(); ++i)
+    if ((in_pocket_[targets[i]] != 0) != in_pocket) targets[i] = own;
   if (site_of_texel_.empty()) return;
   for (std::size_t i = before; i < targets.size(); ++i) targets[i] = site_of_texel_[targets[i]];
 }
@@ -127,13 +155,19 @@ void LinkTargets::ask_for(std::span<const End> ends, const Draws& draws, wide::C
     for (std::size_t q = 0; q < 8; q += 2) hwy::Prefetch(&isovalues_[part.lowest[lane] + corner_[q]]);
 }
 
-void LinkTargets::draw_texels(wide::CornerDraws& part, std::size_t count, float isovalue, std::uint32_t* texels) const {
+void LinkTargets::draw_texels(wide::CornerDraws& part, std::size_t count, float isovalue, bool in_pocket,
+                              std::uint32_t* texels) const {
   const bool by_isovalue = !isovalues_.empty();
   for (std::size_t lane = 0; by_isovalue && lane < count; ++lane) {
     const float* const lowest = &isovalues_[part.lowest[lane]];
     for (std::size_t q = 0; q < 8; ++q) part.away[q][lane] = lowest[corner_[q]] - isovalue;
   }
-  wide::draw_corners(part, count, by_isovalue);
+  const bool by_pocket = !in_pocket_.empty();
+  for (std::size_t lane = 0; by_pocket && lane < count; ++lane) {
+    const std::uint8_t* const lowest = &in_pocket_[part.lowest[lane]];
+    for (std::size_t q = 0; q < 8; ++q) part.likeness[q][lane] = (lowest[corner_[q]] != 0) == in_pocket ? 1.0f : kAcross;
+  }
+  wide::draw_corners(part, count, {.isovalue = by_isovalue, .likeness = by_pocket});
   for (std::size_t lane = 0; lane < count; ++lane) {
     texels[lane] = part.lowest[lane] + corner_[part.corner[lane]];
     if (!site_of_texel_.empty()) hwy::Prefetch(&site_of_texel_[texels[lane]]);

@@ -9,9 +9,11 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
+#include "pass_levels.h"
 #include "wide/draw_corners.h"
 
 namespace isolux {
@@ -40,6 +42,12 @@ class LinkTargets {
   LinkTargets(const LinkTargets&) = delete;
   LinkTargets& operator=(const LinkTargets&) = delete;
 
+  /// From here on sites in pockets, from which nothing leads out of the box, read sites in pockets alone, and all others
+  /// those outside; who finds none of its kind at a ray's end reads itself. With an albedo near 1 the least that is read
+  /// across would light a pocket as if it were open. For sites at texels; volume and sites outlive this. \throw
+  /// Cancelled
+  void part_pockets(const Volume& volume, const Sites& sites, OuterSide outer, const Run& run);
+
   [[nodiscard]] bool are_sites() const { return are_sites_; }
   [[nodiscard]] const Lattice& texels() const { return texels_; }
 
@@ -54,12 +62,15 @@ class LinkTargets {
     Vec3f index;
     std::uint32_t ray;  ///< its number in the site's sequence
   };
-  /// Appends the targets of rays of one site, in their order. \pre not let go
-  void append_targets(std::span<const End> ends, float isovalue, const Draws& draws,
+  /// Appends the targets of rays of one site, at `from` in the volume's index space, in their order. \pre not let go
+  void append_targets(std::span<const End> ends, const Vec3f& from, float isovalue, const Draws& draws,
                       std::vector<std::uint32_t>& targets) const;
 
-  /// Lets go what append_targets() reads, 8 bytes a texel, once no more links are traced.
+  /// Lets go what append_targets() reads, 8 bytes a texel, once no more links are traced; 3 more where there are
+  /// pockets.
   void let_texels_go() {
+    pass_levels_.reset();
+    release(in_pocket_);
     release(site_of_texel_);
     release(own_isovalues_);
     isovalues_ = {};
@@ -68,7 +79,8 @@ class LinkTargets {
  private:
   /// Places of some ends and the numbers of their draws, no more than a part takes; what is read there is asked for.
   void ask_for(std::span<const End> ends, const Draws& draws, wide::CornerDraws& part) const;
-  void draw_texels(wide::CornerDraws& part, std::size_t count, float isovalue, std::uint32_t* texels) const;
+  void draw_texels(wide::CornerDraws& part, std::size_t count, float isovalue, bool in_pocket,
+                   std::uint32_t* texels) const;
   /// The texel whose centre the place is within rounding; kNoLabel if there is none.
   [[nodiscard]] std::uint32_t texel_at(const Vec3f& index) const;
   /// False if the sites do not sit at the texels, one each at most.
@@ -81,6 +93,8 @@ class LinkTargets {
   bool are_sites_ = false;
   std::vector<std::uint32_t> site_of_texel_;  ///< empty if a site's number is its texel's, or the sites sit elsewhere
   std::vector<float> own_isovalues_;
+  std::optional<PassLevels> pass_levels_;  ///< if any site is in a pocket
+  std::vector<std::uint8_t> in_pocket_;    ///< whether a texel's site is, or who stands for it; empty if none is
   std::span<const float> isovalues_{};  ///< of the texels, or of who stands for them; empty: weights are trilinear
 };
 

@@ -131,6 +131,12 @@ Vec3f IsovalueColour::at(float isovalue) const {
   return Vec3f((1.0 - s) * Vec3(low.colour) + s * Vec3(above->colour));
 }
 
+float largest_albedo(const Scene& scene) {
+  float most = 0.0f;
+  for (const auto& key : scene.albedo.keys) most = std::max({most, key.colour.x, key.colour.y, key.colour.z});
+  return most;
+}
+
 Scene scene_of_side(Scene scene, LevelSetSide side) {
   scene.sides = LitSides::kOuter;
   if (side == LevelSetSide::kInner) scene.outer = opposite(scene.outer);

@@ -63,7 +63,7 @@ TEST_P(Draws, FollowTheWeights) {
           for (auto& uniform : draws.uniform) uniform[lane] = random.uniform_float();
           for (std::size_t q = 0; q < 8; ++q) draws.away[q][lane] = away[q];
         }
-        wide::draw_corners(draws, wide::CornerDraws::kMost, by_isovalue);
+        wide::draw_corners(draws, wide::CornerDraws::kMost, {.isovalue = by_isovalue});
         for (const std::uint32_t corner : draws.corner) ++count.at(corner);
       }
       const std::array<double, 8> expected = expected_weights(part, away, by_isovalue);
@@ -87,7 +87,7 @@ TEST_P(Draws, AlwaysFindACornerThatIsPartOfThePlace) {
         for (auto& corner : draws.away) corner[lane] = away;
         draws.away[7][lane] = 0.0f;
       }
-      wide::draw_corners(draws, wide::CornerDraws::kMost, true);
+      wide::draw_corners(draws, wide::CornerDraws::kMost, {.isovalue = true});
       for (const std::uint32_t corner : draws.corner) {
         EXPECT_EQ(corner & 1u, x > 0.0f ? 1u : 0u) << away;
         EXPECT_EQ(corner & 4u, 4u) << away;
@@ -104,7 +104,7 @@ double mean_of_draws(const LinkTargets& targets, const Vec3& index, float isoval
   double sum = 0.0;
   for (int d = 0; d < kDraws; ++d) {
     std::vector<std::uint32_t> target;
-    targets.append_targets(std::array{LinkTargets::End{.index = Vec3f(index), .ray = 5}}, isovalue,
+    targets.append_targets(std::array{LinkTargets::End{.index = Vec3f(index), .ray = 5}}, {}, isovalue,
                            LinkTargets::draws_of(1, std::size_t(d)), target);
     sum += double(light[target.front()]);
   }
@@ -158,7 +158,7 @@ TEST(LinkTargets, ReadTheNearestLitTexelWhereNoneIs) {
   std::vector<LinkTargets::End> ends;
   for (const Vec3f& place : all.positions) ends.push_back({.index = place, .ray = std::uint32_t(ends.size())});
   std::vector<std::uint32_t> found;
-  targets.append_targets(ends, 0.5f, {}, found);
+  targets.append_targets(ends, {}, 0.5f, {}, found);
   EXPECT_EQ(found, std::vector<std::uint32_t>(ends.size(), 0u));
 }
 

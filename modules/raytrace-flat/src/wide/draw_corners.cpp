@@ -98,11 +98,14 @@ void find(CornerDraws& draws, std::size_t count, const PointGrid& grid) {
   }
 }
 
-void draw(CornerDraws& draws, std::size_t count, bool by_isovalue) {
-  for (std::size_t lane = 0; lane < count; lane += hn::Lanes(CornerTag())) {
+void draw(CornerDraws& draws, std::size_t count, const CornerWeights& by) {
+  const CornerTag f;
+  for (std::size_t lane = 0; lane < count; lane += hn::Lanes(f)) {
     CornerFloats weights[8];
     weigh_places(draws, lane, weights);
-    if (by_isovalue) weigh_isovalues(draws, lane, weights);
+    if (by.isovalue) weigh_isovalues(draws, lane, weights);
+    for (int q = 0; by.likeness && q < 8; ++q)
+      weights[q] = hn::Mul(weights[q], hn::LoadU(f, draws.likeness[q] + lane));
     choose(draws, lane, weights);
   }
 }
@@ -121,8 +124,8 @@ void find_corners(CornerDraws& draws, std::size_t count, const PointGrid& grid) 
   HWY_DYNAMIC_DISPATCH(find)(draws, count, grid);
 }
 
-void draw_corners(CornerDraws& draws, std::size_t count, bool by_isovalue) {
-  HWY_DYNAMIC_DISPATCH(draw)(draws, count, by_isovalue);
+void draw_corners(CornerDraws& draws, std::size_t count, const CornerWeights& by) {
+  HWY_DYNAMIC_DISPATCH(draw)(draws, count, by);
 }
 
 }  // namespace isolux::wide

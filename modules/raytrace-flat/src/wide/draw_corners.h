@@ -21,6 +21,7 @@ struct CornerDraws {
   float part[3][kMost];         ///< of the way from the lower corners to the upper ones, by axis
   float uniform[3][kMost];      ///< in [0, 1), one an axis
   float away[8][kMost];         ///< by corner, how far its isovalue is from what it is weighed by
+  float likeness[8][kMost];     ///< by corner, a factor of its weight
   std::uint32_t corner[kMost];  ///< the result
 };
 
@@ -28,8 +29,14 @@ struct CornerDraws {
 /// faces. \pre fewer than 2^32 points
 void find_corners(CornerDraws& draws, std::size_t count, const PointGrid& grid);
 
-/// Draws the first `count` corners by their trilinear weights; `by_isovalue`, times a weight that falls with `away`
-/// over the range of the corners' isovalues and of what they are weighed by. That weight is never 0.
-void draw_corners(CornerDraws& draws, std::size_t count, bool by_isovalue);
+/// By what corners are drawn besides their trilinear weights.
+struct CornerWeights {
+  bool isovalue = false;  ///< a weight that falls with `away` over the range of the corners' isovalues and of what they
+                          ///< are weighed by, and is never 0
+  bool likeness = false;
+};
+
+/// Draws the first `count` corners.
+void draw_corners(CornerDraws& draws, std::size_t count, const CornerWeights& by);
 
 }  // namespace isolux::wide

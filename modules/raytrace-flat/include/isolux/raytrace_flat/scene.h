@@ -91,6 +91,9 @@ struct Scene {
 /// True if every colour of the scene is grey: then one channel is enough.
 [[nodiscard]] bool is_grey(const Scene& scene);
 
+/// Of all isovalues and channels.
+[[nodiscard]] float largest_albedo(const Scene& scene);
+
 /// Whether light is aimed at: light sources, or parts of an image that are many times brighter than the rest. \throw
 /// InvalidInput for images without pixels
 [[nodiscard]] bool has_lamps(const Scene& scene);
