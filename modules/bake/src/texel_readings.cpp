@@ -78,7 +78,8 @@ class PointParts {
 };
 
 /// What the texel is filled with: its lit neighbours by the inverse square of their distance (fill_unlit).
-void add_neighbours(const Index3& texel, const Vec3& spacing, double weight, TexelSiteFinder& sites, PointParts& parts) {
+void add_neighbours(const Index3& texel, const Vec3& spacing, double weight, TexelSiteFinder& sites,
+                    PointParts& parts) {
   std::vector<std::pair<std::size_t, double>> lit;
   double sum = 0.0;
   for (int q = 0; q < 27; ++q) {

@@ -37,8 +37,8 @@ struct Readings {
   double own = 0.0;              ///< the share of all readings that is texels' own light, not filled
 };
 
-/// `texels` are the traced sites of `around`, at least one, whose mean stands for what is filled from afar. `openness` is
-/// before them, or empty, and `usual_openness` for texels without light of their own: nothing is taken off these.
+/// `texels` are the traced sites of `around`, at least one, whose mean stands for what is filled from afar. `openness`
+/// is before them, or empty, and `usual_openness` for texels without light of their own: nothing is taken off these.
 [[nodiscard]] Readings read_between(const TexelsAround& around, const SampleSet& texels,
                                     const std::vector<Vec3f>& openness, const Vec3& usual_openness);
 

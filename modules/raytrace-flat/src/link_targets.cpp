@@ -165,7 +165,8 @@ void LinkTargets::draw_texels(wide::CornerDraws& part, std::size_t count, float 
   const bool by_pocket = !in_pocket_.empty();
   for (std::size_t lane = 0; by_pocket && lane < count; ++lane) {
     const std::uint8_t* const lowest = &in_pocket_[part.lowest[lane]];
-    for (std::size_t q = 0; q < 8; ++q) part.likeness[q][lane] = (lowest[corner_[q]] != 0) == in_pocket ? 1.0f : kAcross;
+    for (std::size_t q = 0; q < 8; ++q)
+      part.likeness[q][lane] = (lowest[corner_[q]] != 0) == in_pocket ? 1.0f : kAcross;
   }
   wide::draw_corners(part, count, {.isovalue = by_isovalue, .likeness = by_pocket});
   for (std::size_t lane = 0; lane < count; ++lane) {

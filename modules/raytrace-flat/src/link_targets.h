@@ -42,9 +42,9 @@ class LinkTargets {
   LinkTargets(const LinkTargets&) = delete;
   LinkTargets& operator=(const LinkTargets&) = delete;
 
-  /// From here on sites in pockets, from which nothing leads out of the box, read sites in pockets alone, and all others
-  /// those outside; who finds none of its kind at a ray's end reads itself. With an albedo near 1 the least that is read
-  /// across would light a pocket as if it were open. For sites at texels; volume and sites outlive this. \throw
+  /// From here on sites in pockets, from which nothing leads out of the box, read sites in pockets alone, and all
+  /// others those outside; who finds none of its kind at a ray's end reads itself. With an albedo near 1 the least that
+  /// is read across would light a pocket as if it were open. For sites at texels; volume and sites outlive this. \throw
   /// Cancelled
   void part_pockets(const Volume& volume, const Sites& sites, OuterSide outer, const Run& run);
 
@@ -95,7 +95,7 @@ class LinkTargets {
   std::vector<float> own_isovalues_;
   std::optional<PassLevels> pass_levels_;  ///< if any site is in a pocket
   std::vector<std::uint8_t> in_pocket_;    ///< whether a texel's site is, or who stands for it; empty if none is
-  std::span<const float> isovalues_{};  ///< of the texels, or of who stands for them; empty: weights are trilinear
+  std::span<const float> isovalues_{};     ///< of the texels, or of who stands for them; empty: weights are trilinear
 };
 
 }  // namespace isolux

@@ -69,9 +69,7 @@ double through_slices(const Corners& corners, unsigned from, unsigned to, unsign
   double least = std::numeric_limits<double>::infinity();
   for (int s = 0; s < kSlices; ++s) {
     const double z = double(s) / (kSlices - 1);
-    const auto at = [&](unsigned corner) {
-      return (1.0 - z) * corners[corner & ~third] + z * corners[corner | third];
-    };
+    const auto at = [&](unsigned corner) { return (1.0 - z) * corners[corner & ~third] + z * corners[corner | third]; };
     const double level = across(at(from), at(to), at(from ^ a), at(from ^ b));
     least = std::min(least, std::max({level, corners[from], corners[to]}));
   }
@@ -136,7 +134,8 @@ class PassLevels::Flood {
       }
     }
     // Each cell that the point is a corner of.
-    for (unsigned corner = 0; corner < 8; ++corner) go_on_within(at - Index3(corner & 1u, corner >> 1 & 1u, corner >> 2), corner, height);
+    for (unsigned corner = 0; corner < 8; ++corner)
+      go_on_within(at - Index3(corner & 1u, corner >> 1 & 1u, corner >> 2), corner, height);
   }
   void go_on_within(const Index3& cell, unsigned from, double height) {
     if (!holds(cell) || !holds(cell + 1)) return;

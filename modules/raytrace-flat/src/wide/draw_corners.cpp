@@ -104,8 +104,7 @@ void draw(CornerDraws& draws, std::size_t count, const CornerWeights& by) {
     CornerFloats weights[8];
     weigh_places(draws, lane, weights);
     if (by.isovalue) weigh_isovalues(draws, lane, weights);
-    for (int q = 0; by.likeness && q < 8; ++q)
-      weights[q] = hn::Mul(weights[q], hn::LoadU(f, draws.likeness[q] + lane));
+    for (int q = 0; by.likeness && q < 8; ++q) weights[q] = hn::Mul(weights[q], hn::LoadU(f, draws.likeness[q] + lane));
     choose(draws, lane, weights);
   }
 }

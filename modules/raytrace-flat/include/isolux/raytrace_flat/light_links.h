@@ -39,7 +39,7 @@ struct LinkSettings {
   int kept = 0;
   OuterSide outer = OuterSide::kLower;
   LinkEnds ends = LinkEnds::kKept;
-  std::optional<Lattice> texels{};       ///< the grid that reflected light is read from; default one texel a cell
+  std::optional<Lattice> texels{};  ///< the grid that reflected light is read from; default one texel a cell
   /// Of rays kept with sites at the texels: what ends on a level set from whose outer side nothing leads out of the box
   /// reads sites on such level sets alone, and everything else none of them. Right for albedos near 1, with which a way
   /// out, however narrow, lights all that it leads to; with others light fades towards it and is better read from both.
