@@ -34,6 +34,8 @@ constexpr double kSitesEnough = 2.0;
 constexpr int kEndsEnough = 16;
 /// From a larger albedo on it is better that pockets read no light from outside (docs/tracer.md, "Pockets").
 constexpr float kPocketAlbedo = 0.98f;
+/// From this one on light that is made in a pocket never ends: without bounds unless some gets out.
+constexpr float kEndlessAlbedo = 0.9999f;
 /// Sites whose places are made again at once.
 constexpr std::size_t kSamplesAPart = std::size_t(1) << 18;
 
@@ -57,6 +59,15 @@ Lattice at_least_one_a_cell(const Lattice& texels, const Lattice& volume) {
   const Index3 cells = volume.size - 1;
   if (glm::all(glm::greaterThanEqual(texels.size, cells))) return texels;
   return cell_lattice(volume, glm::max(texels.size, cells));
+}
+
+bool parts_pockets(const Scene& scene) {
+  const float albedo = largest_albedo(scene);
+  const bool shines = std::any_of(scene.emission.keys.begin(), scene.emission.keys.end(),
+                                  [](const auto& key) { return key.colour != Vec3f(0.0f); });
+  const bool has_near_lamps = std::any_of(scene.lights.begin(), scene.lights.end(),
+                                          [](const Light& light) { return !std::holds_alternative<SunLight>(light); });
+  return albedo > kPocketAlbedo && (albedo < kEndlessAlbedo || !(shines || has_near_lamps));
 }
 
 }  // namespace
@@ -91,7 +102,7 @@ KeptRays::KeptRays(const Volume& volume, const Scene& scene, const BakeSettings&
                              .outer = scene.outer,
                              .ends = settings_.trace.bounces == 0 ? LinkEnds::kDropped : LinkEnds::kKept,
                              .texels = reflecting_,
-                             .parts_pockets = largest_albedo(scene) > kPocketAlbedo,
+                             .parts_pockets = parts_pockets(scene),
                              .nets = has_target(settings_) ? RayNets::kIndependent : RayNets::kInterleaved};
   links_ = std::make_unique<LightLinks>(volume, std::move(found.sites), request, run);
   trace_seconds_ = watch.seconds();

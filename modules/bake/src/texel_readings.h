@@ -11,8 +11,8 @@
 
 namespace isolux {
 
-/// The texels that points are read from, as fill_unlit() leaves them: one without light of its own has that of the lit
-/// ones around it.
+/// The texels that points are read from, much as fill_unlit() leaves them: one without light of its own has that of the
+/// lit ones around it.
 struct TexelsAround {
   struct Part {
     std::size_t point;

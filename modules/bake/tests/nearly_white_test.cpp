@@ -3,6 +3,7 @@
 #include <isolux/bake.h>
 #include <isolux/volume_io/read.h>
 
+#include <algorithm>
 #include <glm/geometric.hpp>
 
 namespace isolux::test {
@@ -58,6 +59,18 @@ TEST(NearlyWhite, PocketsAreDarkAndOpenSpacesWhite) {
           EXPECT_NEAR(e, 1.0, 0.01) << radius;
         }
       }
+}
+
+TEST(NearlyWhite, LightThatIsMadeInWhitePocketsMayLeaveThem) {
+  // Kept in, it would have no bound but where the iteration ends: thousands, with the least way out tens to hundreds.
+  Scene scene;
+  scene.albedo = {.keys = {{0.0f, Vec3f(1.0f)}}};
+  scene.emission = {.keys = {{0.0f, Vec3f(0.01f)}}};
+  BakeSettings settings;
+  settings.trace.rays = 16;
+  const BakeResult result = bake(read_volume("gen:cavity:17"), scene, settings, builtin_stages(), isolux::Run{});
+  EXPECT_LT(*std::max_element(result.light.values.begin(), result.light.values.end()), 100.0f);
+  EXPECT_EQ(result.skipped.count("sweeps_beyond_limit"), 0u);
 }
 
 TEST(NearlyWhite, FurnacesDoNotOvershoot) {

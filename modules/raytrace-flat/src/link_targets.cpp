@@ -77,7 +77,7 @@ LinkTargets::LinkTargets(const Volume& volume, const Sites& sites, const Lattice
 }
 
 void LinkTargets::part_pockets(const Volume& volume, const Sites& sites, OuterSide outer, const Run& run) {
-  if (!are_sites_) return;
+  if (!are_sites_ || volume.lattice().count() >= kNoLabel) return;
   pass_levels_.emplace(volume, outer, run);
   in_pocket_.resize(texels_.count());
   std::atomic<bool> any = false;

@@ -44,8 +44,8 @@ class LinkTargets {
 
   /// From here on sites in pockets, from which nothing leads out of the box, read sites in pockets alone, and all
   /// others those outside; who finds none of its kind at a ray's end reads itself. With an albedo near 1 the least that
-  /// is read across would light a pocket as if it were open. For sites at texels; volume and sites outlive this. \throw
-  /// Cancelled
+  /// is read across would light a pocket as if it were open. For sites at texels, in volumes of fewer than 2^32 - 1
+  /// grid points; volume and sites outlive this. \throw Cancelled
   void part_pockets(const Volume& volume, const Sites& sites, OuterSide outer, const Run& run);
 
   [[nodiscard]] bool are_sites() const { return are_sites_; }
@@ -66,8 +66,8 @@ class LinkTargets {
   void append_targets(std::span<const End> ends, const Vec3f& from, float isovalue, const Draws& draws,
                       std::vector<std::uint32_t>& targets) const;
 
-  /// Lets go what append_targets() reads, 8 bytes a texel, once no more links are traced; 3 more where there are
-  /// pockets.
+  /// Lets go what append_targets() reads, 8 bytes a texel, and where there are pockets one more and 2 a grid point of
+  /// the volume, once no more links are traced.
   void let_texels_go() {
     pass_levels_.reset();
     release(in_pocket_);

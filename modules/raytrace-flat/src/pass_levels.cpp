@@ -177,7 +177,9 @@ bool PassLevels::lets_out(const Index3& cell, double level) const {
 
 bool PassLevels::is_closed(const Vec3f& index, float isovalue) const {
   if (levels_.empty()) return false;
-  const double level = (sign_ * double(isovalue) - low_) / step_ + kMargin * double(kLevels);
+  // What is not let out below the highest value has the highest level.
+  const double level =
+      std::min((sign_ * double(isovalue) - low_) / step_ + kMargin * double(kLevels), double(kHighest));
   Index3 first;
   Index3 last;
   for (int a = 0; a < 3; ++a) {

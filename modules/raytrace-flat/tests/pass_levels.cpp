@@ -40,6 +40,13 @@ TEST(PassLevels, TellClosedSpheresFromThoseThatTheBoxCuts) {
   }
 }
 
+// All around the hollow there is nothing but the highest value.
+TEST(PassLevels, TellPocketsOfTheHighestValue) {
+  const Volume volume = volume_of(17, [](const Vec3& at) { return std::min(glm::length(at - 8.0), 5.0); });
+  const PassLevels levels(volume, OuterSide::kLower, {});
+  EXPECT_TRUE(levels.is_closed(Vec3f(8.0f, 8.0f, 12.9f), 5.0f));
+}
+
 TEST(PassLevels, FindNoPocketWhereAllIsTheSame) {
   const Volume volume = volume_of(4, [](const Vec3&) { return 3.0; });
   EXPECT_FALSE(PassLevels(volume, OuterSide::kLower, {}).is_closed(Vec3f(1.5f), 3.0f));

@@ -20,8 +20,9 @@ class TexelPlaces;
 class KeptRays {
  public:
   /// Traces settings.trace.rays a site, or a first few where settings name an error or a time. Of the scene only the
-  /// outer side counts. \pre the volume outlives this \throw as bake(); InvalidInput for scenes of both sides, and
-  /// where settings.most_link_bytes do not hold four rays of each site
+  /// outer side counts, and whether its albedo is near 1: pockets are then told apart for all scenes to come
+  /// (LinkSettings::parts_pockets). \pre the volume outlives this \throw as bake(); InvalidInput for scenes of both
+  /// sides, and where settings.most_link_bytes do not hold four rays of each site
   KeptRays(const Volume& volume, const Scene& scene, const BakeSettings& settings, const Stages& stages,
            const Run& run);
   /// The same from sites that are found. \pre with_defaults(settings)
