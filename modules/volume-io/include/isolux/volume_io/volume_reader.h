@@ -69,7 +69,7 @@ class VolumeReader {
   }
 };
 
-/// raw, nrrd, analytic, and itk where it was built.
+/// raw, nrrd, npy, mrc, nifti, vtk and analytic, and those whose libraries were there when it was built: vti and itk.
 [[nodiscard]] Registry<VolumeReader> readers();
 
 }  // namespace isolux
