@@ -32,7 +32,7 @@ constexpr int kMostRounds = 24;
 constexpr double kSitesEnough = 2.0;
 /// Rays of a site at a texel whose ends they are iterated over.
 constexpr int kEndsEnough = 16;
-/// From a larger albedo on it is better that pockets read no light from outside (docs/tracer.md, "Pockets").
+/// From a larger albedo on it is better that pockets read no light from outside (docs/light.md, "Pockets").
 constexpr float kPocketAlbedo = 0.98f;
 /// From this one on light that is made in a pocket never ends: without bounds unless some gets out.
 constexpr float kEndlessAlbedo = 0.9999f;

@@ -15,7 +15,7 @@ namespace hn = hwy::HWY_NAMESPACE;
 using CornerTag = hn::CappedTag<float, CornerDraws::kMost>;
 using CornerFloats = hn::Vec<CornerTag>;
 
-/// Of the range of isovalues, the part that is a standard deviation of the weight (docs/tracer.md).
+/// Of the range of isovalues, the part that is a standard deviation of the weight; decision 6 has others.
 inline constexpr float kIsovalueWidth = 0.06f;
 
 HWY_INLINE void weigh_places(const CornerDraws& draws, std::size_t lane, CornerFloats (&weights)[8]) {
