@@ -15,7 +15,8 @@ namespace hn = hwy::HWY_NAMESPACE;
 using CornerTag = hn::CappedTag<float, CornerDraws::kMost>;
 using CornerFloats = hn::Vec<CornerTag>;
 
-/// Of the range of isovalues, the part that is a standard deviation of the weight; decision 6 has others.
+/// Of the range of isovalues, the part that is a standard deviation of the weight; others are measured in
+/// docs/decisions/0006-one-texel-a-link.md.
 inline constexpr float kIsovalueWidth = 0.06f;
 
 HWY_INLINE void weigh_places(const CornerDraws& draws, std::size_t lane, CornerFloats (&weights)[8]) {
