@@ -6,7 +6,7 @@
 namespace isolux {
 namespace {
 
-// docs/resampling.md has the curves behind these.
+// docs/measured/resampling.md has the curves behind these.
 constexpr double kFitSites = 8.0;   // a cell or texel
 constexpr double kFineSites = 2.0;  // a texel without slopes
 

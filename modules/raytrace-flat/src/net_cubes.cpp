@@ -15,7 +15,8 @@ namespace {
 /// A net's variance falls as rays^-1.5.
 constexpr double kFall = 1.5;
 /// Rays go by this power of the noise of the first ones. The variance of all sites together is least for 1 / (1 +
-/// kFall); less is better where what neighbours have in common is kept and the rest taken out (docs/resampling.md).
+/// kFall); less is better where what neighbours have in common is kept and the rest taken out
+/// (docs/measured/resampling.md, "Rays go where noise is").
 constexpr double kPower = 0.3;
 /// Sites of mean noise that each cube is thought to have besides: few sites that agree by chance say little.
 constexpr double kSitesBesides = 2.0;

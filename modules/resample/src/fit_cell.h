@@ -6,7 +6,8 @@
 
 namespace isolux {
 
-/// Steps of a fit's near-field terms, in mean grid spacings; docs/resampling.md has what fewer and others are worth.
+/// Steps of a fit's near-field terms, in mean grid spacings; docs/measured/resampling.md has what fewer and others are
+/// worth.
 inline constexpr std::array<double, 4> kNearFieldSteps = {0.5, 1.0, 2.0, 4.0};
 
 /// What a fit says of a texel beside its value.

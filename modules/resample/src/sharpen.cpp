@@ -12,7 +12,7 @@ namespace isolux {
 namespace {
 
 /// A twelfth would make cubic light exact at the middle of cells; what is left of the noise asks for less
-/// (docs/resampling.md).
+/// (docs/measured/resampling.md, "Sharpening for reading").
 constexpr float kSharpening = 0.045f;
 
 /// The light's bend along an axis, second differences, at the middle one of five texels; less the largest that a

@@ -11,7 +11,8 @@ namespace isolux {
 namespace {
 
 constexpr std::size_t kTried = 1024;  // samples foretold: their mean square error is known to some 5 percent
-/// Too few samples to tell: the best of noise-free ones on smooth light (docs/resampling.md).
+/// Too few samples to tell: the best of noise-free ones on smooth light (docs/resampling.md, "Shepard's
+/// interpolation").
 constexpr std::size_t kLeast = 64;
 constexpr int kUsualCount = 11;
 constexpr double kUsualExponent = 2.0;

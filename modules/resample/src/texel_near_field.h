@@ -10,7 +10,7 @@
 namespace isolux {
 
 /// Where openness_before() looks. Half a step is one of a fit's but not one of these: at cell centres it says other
-/// things than elsewhere (docs/resampling.md).
+/// things than elsewhere (docs/measured/resampling.md, "The near field of texels' own light").
 inline constexpr std::array<double, 3> kOwnSteps = {1.0, 2.0, 4.0};
 
 /// Near-field terms for texels that keep their own light (TexelLight::kOwn): the weights with which the texels'

@@ -22,7 +22,7 @@ enum class TexelStorage {
 ///     e = clamp(V + S (h - h0) + B . n + sum over near-field terms of weight (openness - mean), 0, ceiling)
 ///
 /// V, S and B interpolate the textures below trilinearly, h is the isovalue of the point and n its level set's normal
-/// towards lower values; docs/resampling.md derives it. A plain grid is read trilinearly. Immutable, callable from many
+/// towards lower values; docs/resampling.md says why. A plain grid is read trilinearly. Immutable, callable from many
 /// threads; the volume must outlive it.
 class LightReader {
  public:
@@ -84,7 +84,8 @@ struct LightShader {
 
 /// `vec3 light_at_vertices(vec3 place, float isovalue)`, the sum over near-field terms and B . n, as a shader likewise,
 /// for any stage: six fetches of the volume, one a term, and three of the light. It may be computed at a surface's
-/// vertices and interpolated between them (docs/resampling.md has what that does to the error). \pre kind.at_vertices()
+/// vertices and interpolated between them (docs/measured/resampling.md has what that does to the error).
+/// \pre kind.at_vertices()
 [[nodiscard]] std::string light_at_vertices_glsl(const LightShader& kind);
 
 }  // namespace isolux
