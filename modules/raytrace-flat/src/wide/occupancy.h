@@ -35,9 +35,9 @@ class CellCodes {
   std::vector<std::uint8_t> codes_;
 };
 
-/// Which cells a ray of some isovalues must look into, and how far it may leap: one bit a cell and one chessboard
-/// distance a brick (after Sramek & Kaufman, "Fast ray-tracing of rectilinear volume data using distance transforms",
-/// IEEE TVCG 2000).
+/// Which cells a ray of some isovalues must look into, and how far it may leap: one bit a cell and, for each octant of
+/// directions, one chessboard distance a brick (after Sramek & Kaufman, "Fast ray-tracing of rectilinear volume data
+/// using distance transforms", IEEE TVCG 2000). docs/tracer.md has a picture.
 class Occupancy {
  public:
   explicit Occupancy(const CellCodes& codes);
