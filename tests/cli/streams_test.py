@@ -16,6 +16,28 @@ def small_disk():
     resource.setrlimit(resource.RLIMIT_FSIZE, (1000, 1000))
 
 
+def small_memory():
+    resource.setrlimit(resource.RLIMIT_AS, (1 << 30, 1 << 30))
+
+
+class SmallMemory(CommandLineTest):
+    def test_is_said_before_the_work(self):
+        def run(*arguments):
+            return subprocess.run([ISOLUX, *arguments], cwd=self.folder, capture_output=True, text=True, preexec_fn=small_memory)
+        if run("info", "gen:sphere:9").returncode != 0:
+            self.skipTest("the program, as it is built, takes more addresses than that for itself")
+        done = run("bake", "gen:noise:120", "-o", "light.nrrd", "--quiet", "--resampler", "fit", "--rays", "1", "--threads", "2")
+        self.assertEqual(done.returncode, 1, done.stderr)
+        self.assertRegex(done.stderr, r"^isolux: warning: this takes about \d\.\d GB of memory beside the volume, and [01]\.\d GB are free: "
+                                      r"--resampler direct, --bounce-method paths or an --iso-range take less\n"
+                                      r"isolux: error: bake: not enough memory for [^\n]*\n$")
+        self.assertEqual(os.listdir(self.folder), [])
+        done = run("bake", "gen:noise:120", "-o", "light.nrrd", "--quiet", "--rays", "1", "--threads", "2", "--bounces", "0", "--report", "r.json")
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
+        report = self.report("r.json")
+        self.assertTrue(0.5 < report["memory_bytes_foreseen"] / report["peak_memory_bytes"] < 1.5, report)
+
+
 class FullDisk(CommandLineTest):
     def test_leaves_an_error_that_names_the_file_and_no_half_file(self):
         self.succeed("bake", "gen:sphere:16", "-o", "light.nrrd", "--rays", 1, "--quiet")

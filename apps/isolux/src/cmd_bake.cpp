@@ -1,11 +1,14 @@
 #include <fmt/format.h>
 #include <isolux/bake/choose_texels.h>
 #include <isolux/bake/light_metadata.h>
+#include <isolux/bake/memory_foreseen.h>
+#include <isolux/core/machine_memory.h>
 
 #include <algorithm>
 #include <array>
 #include <cctype>
 #include <cmath>
+#include <cstdint>
 #include <filesystem>
 #include <memory>
 
@@ -101,6 +104,24 @@ void choose_size(const BakeOptions& options, const Volume& volume, const Scene& 
                           chosen.texels.y, chosen.texels.z, chosen.error, target));
 }
 
+/// Says beforehand what the system would say after minutes, by killing the program.
+void foresee_memory(const BakeOptions& options, const Volume& volume, const Scene& scene, const BakeSettings& settings,
+                    Session& session) {
+  const double bytes = memory_foreseen(volume, scene, settings, session.stages);
+  session.report["memory_bytes_foreseen"] = std::uint64_t(bytes + double(sizeof(float) * volume.lattice().count()));
+  const double left = free_memory();
+  if (bytes < left) return;
+  std::string less = "fewer texels (--texels-a-cell)";
+  if (options.samples > 0)
+    less = "fewer --samples";
+  else if (settings.resampler.name == "fit")
+    less = "--resampler direct";
+  if (iterates(settings) && settings.trace.bounces != 0) less += ", --bounce-method paths";
+  if (!settings.isovalues) less += " or an --iso-range";
+  session.warn(fmt::format("this takes about {:.1f} GB of memory beside the volume, and {:.1f} GB are free: {} take less",
+                           bytes * 1e-9, left * 1e-9, less));
+}
+
 /// What a bake takes memory for, and by which words it takes less.
 std::string wanted(const BakeOptions& options, const Volume& volume, const BakeSettings& settings) {
   const Index3 texels = texel_lattice(volume.lattice(), settings).size;
@@ -129,6 +150,7 @@ void run_bake(const BakeOptions& options, Session& session) {
     settings = bake_settings(options, session.stages, value_moments(volume.values.values()));
   const Scene scene = session.timed("read", [&] { return options.trace.scene(); });
   if (options.chooses_texels()) choose_size(options, volume, scene, settings, session);
+  foresee_memory(options, volume, scene, settings, session);
   BakeResult result = with_memory_for(wanted(options, volume, settings),
                                       [&] { return bake(volume, scene, settings, session.stages, session.run); });
   for (const auto& [stage, seconds] : result.seconds) session.add_seconds(stage, seconds);

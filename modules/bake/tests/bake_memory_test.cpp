@@ -70,6 +70,70 @@ TEST(BakeMemory, OfAllBouncesIsThatOfLinksAndAFewFloatsATexel) {
   // and 8 that tell ends; things of fixed size 1 MB: 38.2. The sites' places would add 24, two more iterates 8.
   EXPECT_LT((double(most_bytes - before) - double(result.link_bytes)) / texels, 42.0);
 }
+/// What a bake has at once over what is foreseen for it.
+double had_over_foreseen(const Volume& volume, const Scene& scene, const BakeSettings& settings) {
+  const Stages stages = builtin_stages();
+  const double foreseen = memory_foreseen(volume, scene, settings, stages);
+  const std::size_t before = bytes_held;
+  most_bytes = before;
+  const BakeResult result = bake(volume, scene, settings, stages, {.threads = 2});
+  return double(most_bytes - before) / foreseen;
+}
+
+TEST(BakeMemory, IsForeseen) {
+  const Volume volume = read_volume("gen:gyroid:64");
+  Scene coloured;
+  coloured.environment = SkyEnvironment{.up = {0, 0, 1}, .zenith = {1, 0.5, 0.2}, .horizon = {1, 1, 1}, .ground = {}};
+  Scene sunny = coloured;
+  sunny.lights.emplace_back(SunLight{.direction = {0, 0, 1}, .irradiance = {1, 1, 1}, .angular_diameter_deg = 1});
+  Scene both = coloured;
+  both.sides = LitSides::kBoth;
+  BakeSettings settings;
+  settings.trace.rays = 16;
+  BakeSettings straight = settings;
+  straight.trace.bounces = 0;
+  BakeSettings paths = settings;
+  paths.bounce_method = BounceMethod::kPaths;
+  BakeSettings denoised = straight;
+  denoised.resampler.settings = {{"denoise", "true"}};
+  BakeSettings fit = straight;
+  fit.trace.rays = 2;
+  fit.resampler.name = "fit";
+  BakeSettings scattered = straight;
+  scattered.samples = 200000;
+  BakeSettings towards = settings;
+  towards.target_rmse = 0.05;
+  BakeSettings need = settings;
+  need.target_rmse = 0.05;
+  need.texel_sites = TexelSites::kNeeded;
+  struct Case {
+    const char* name;
+    const Scene& scene;
+    const BakeSettings& settings;
+  };
+  const Scene grey;
+  for (const Case& c : {Case{"grey", grey, settings}, Case{"coloured", coloured, settings},
+                        Case{"sunny", sunny, settings}, Case{"both sides", both, settings},
+                        Case{"without bounces", coloured, straight}, Case{"paths", coloured, paths},
+                        Case{"denoised", grey, denoised}, Case{"denoised, sunny", sunny, denoised},
+                        Case{"fit", grey, fit}, Case{"scattered", coloured, scattered},
+                        Case{"towards an error", grey, towards}, Case{"by need", grey, need}}) {
+    const double ratio = had_over_foreseen(volume, c.scene, c.settings);
+    EXPECT_GT(ratio, 0.6) << c.name;
+    EXPECT_LT(ratio, 1.3) << c.name;
+  }
+}
+
+TEST(BakeMemory, IsForeseenToBeLessWhereFewLevelSetsAreAsked) {
+  const Volume volume = read_volume("gen:gyroid:64");
+  BakeSettings settings;
+  settings.resampler.name = "fit";
+  const Stages stages = builtin_stages();
+  const double all = memory_foreseen(volume, {}, settings, stages);
+  settings.isovalues = ValueRange{0.0f, 0.0f};
+  EXPECT_LT(memory_foreseen(volume, {}, settings, stages), 0.6 * all);
+  EXPECT_GT(had_over_foreseen(volume, {}, settings), 0.6);
+}
 #endif
 
 }  // namespace

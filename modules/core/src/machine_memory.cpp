@@ -2,24 +2,48 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <fstream>
 #include <limits>
+#include <optional>
 #include <string>
 
+#include "memory_group.h"
+
 namespace isolux {
+namespace {
+
+/// The bytes that a file of the system's says behind a word, in units of 1024.
+std::optional<std::uint64_t> bytes_behind(const char* file, const std::string& word) {
+  std::ifstream in(file);
+  for (std::string read; in >> read;) {
+    std::uint64_t kilobytes = 0;
+    if (read == word && in >> kilobytes) return kilobytes * 1024;
+  }
+  return std::nullopt;
+}
+
+}  // namespace
 
 double machine_memory() {
   const double bytes = double(sysconf(_SC_PHYS_PAGES)) * double(sysconf(_SC_PAGE_SIZE));
-  return bytes > 0.0 ? bytes : std::numeric_limits<double>::infinity();
+  return std::min(bytes > 0.0 ? bytes : std::numeric_limits<double>::infinity(), group_memory("/").most);
+}
+
+double free_memory() {
+  constexpr double kNoLimit = std::numeric_limits<double>::infinity();
+  const auto available = bytes_behind("/proc/meminfo", "MemAvailable:");
+  // `ulimit -v`: of addresses, but hardly anything has more of these than it uses.
+  rlimit own{};
+  const auto taken = bytes_behind("/proc/self/status", "VmSize:");
+  const bool is_limited = getrlimit(RLIMIT_AS, &own) == 0 && own.rlim_cur != RLIM_INFINITY && taken;
+  return std::min({available ? double(*available) : kNoLimit, group_memory("/").left,
+                   is_limited ? std::max(0.0, double(own.rlim_cur) - double(*taken)) : kNoLimit});
 }
 
 std::uint64_t peak_memory() {
   // getrusage() knows the peak of the program that began this one, too, from before it became this one.
-  std::ifstream status("/proc/self/status");
-  for (std::string word; status >> word;) {
-    std::uint64_t kilobytes = 0;
-    if (word == "VmHWM:" && status >> kilobytes) return kilobytes * 1024;
-  }
+  if (const auto bytes = bytes_behind("/proc/self/status", "VmHWM:")) return *bytes;
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);
   return std::uint64_t(usage.ru_maxrss) * 1024;

@@ -8,6 +8,7 @@
 #include <isolux/bake/light_metadata.h>
 #include <isolux/bake/light_on_box.h>
 #include <isolux/bake/light_points.h>
+#include <isolux/bake/memory_foreseen.h>
 #include <isolux/bake/scene_file.h>
 #include <isolux/bake/stages.h>
 #include <isolux/bake/version.h>

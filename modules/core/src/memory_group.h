@@ -1,0 +1,17 @@
+#pragma once
+
+#include <filesystem>
+
+namespace isolux {
+
+/// What a control group, as of a container or of a batch job, lets its programs have: infinite where nothing is said.
+struct GroupMemory {
+  double most;  ///< bytes in all
+  double left;  ///< bytes that are not taken yet; what caches files counts as left
+};
+
+/// That of this process's group and those above it, whichever is least, of both versions of Linux's control groups;
+/// files are looked up under `root`, which is the system's own but for tests.
+[[nodiscard]] GroupMemory group_memory(const std::filesystem::path& root);
+
+}  // namespace isolux
