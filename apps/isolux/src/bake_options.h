@@ -14,7 +14,8 @@ namespace isolux {
 /// --exact-light`.
 class TraceOptions {
  public:
-  void add_to(CLI::App& command, Session& session);
+  /// `origins`: from what each so many rays start, "a site" or the like.
+  void add_to(CLI::App& command, Session& session, const std::string& origins);
   /// --scene alone.
   void add_scene_to(CLI::App& command, Session& session, const std::string& help);
   /// \throw UsageError, IoError, InvalidInput

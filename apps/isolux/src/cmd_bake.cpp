@@ -184,7 +184,7 @@ void add_bake_command(CLI::App& program, Session& session) {
   options->volume.add_to(command, session);
   session.writes(
       command.add_option("-o,--output", options->output, "the light to write")->required()->type_name("LIGHT.nrrd"));
-  options->trace.add_to(command, session);
+  options->trace.add_to(command, session, "a site");
   command
       .add_option("--iso-range", options->iso_range,
                   "light only these level sets: LO:HI, or H:H for one, each a number or standard deviations above the "
@@ -212,7 +212,7 @@ void add_bake_command(CLI::App& program, Session& session) {
       .add_option(
           "--bounce-method", options->bounce_method,
           "iterated: trace once, keep the hits and iterate on the grid (default for "
-          "sites at texels and --resampler fit, unless --tracer or scattered --sites need is given); paths: unbiased")
+          "sites at texels and --resampler fit, unless --tracer, --set tracer... or scattered --sites need is given); paths: unbiased")
       ->check(CLI::IsMember({"iterated", "paths"}));
   command
       .add_option("--rmse", options->rmse,

@@ -20,7 +20,7 @@ constexpr double kTracer = 1.0;
 /// A site's place, isovalue and normal.
 constexpr double kSite = 28.0;
 /// Rays that a site ends with where an error or a time is asked.
-constexpr double kRaysToATarget = 32.0;
+constexpr double kRaysToATarget = 24.0;
 constexpr std::size_t kCellsLookedAt = 65536;
 /// Texels that a level set is read from, by cells that it crosses, at most.
 constexpr double kReadByACell = 2.5;
