@@ -191,10 +191,16 @@ TEST(KeptRays, GiveWayToPathsWhereTheErrorAskedIsOutOfReach) {
 
 TEST(KeptRays, SpendRaysWhereTheErrorIs) {
   const Volume volume = read_volume("gen:two-spheres:25");
-  const BakeResult result = bake(volume, white(0.8f), towards(0.01, 0), builtin_stages(), isolux::Run{});
-  EXPECT_EQ(result.least_rays, 16u);
-  EXPECT_GE(result.most_rays, 128u);
-  EXPECT_LT(double(result.counters.rays), 0.5 * double(result.most_rays) * double(result.sites));
+  const auto evenly = [&](int rays, std::uint64_t seed) {
+    BakeSettings settings;
+    settings.trace = {.rays = rays, .bounces = 0};
+    return bake(volume, white(0.8f), settings, builtin_stages(), {.seed = seed}).light;
+  };
+  const IlluminationGrid truth = evenly(2048, 2);
+  const BakeResult result = bake(volume, white(0.8f), towards(0.003, 0), builtin_stages(), isolux::Run{});
+  EXPECT_GE(result.most_rays, 8 * result.least_rays);
+  EXPECT_LT(double(result.counters.rays), 0.8 * 128.0 * double(result.sites));
+  EXPECT_LT(rms_difference(result.light, truth), rms_difference(evenly(128, 1), truth));
 }
 
 TEST(KeptRays, ReachTheSameErrorOnAnyNumberOfThreads) {

@@ -4,6 +4,7 @@
 #include <isolux/volume_io/read.h>
 
 #include <cmath>
+#include <cstdint>
 #include <functional>
 #include <vector>
 
@@ -47,6 +48,23 @@ TEST(Target, EndsIterationWhereReadingIsWrongAlready) {
   const BakeResult result = bake(volume, scene, settings, builtin_stages(), {});
   EXPECT_GT(result.reading_error, 0.004);
   EXPECT_LT(result.most_rays, 1u << 14);
+}
+
+// Of white noise one site in three sees so little of the sky that its first rays all hit. It got no more rays and no
+// error for it: in all the light was twice as wrong as was said.
+TEST(Target, CountsSitesWhoseFirstRaysAgreeByLuck) {
+  const Volume volume = read_volume("gen:noise:14");
+  Scene scene;
+  scene.environment = SkyEnvironment{};
+  BakeSettings settings;
+  settings.trace = {.rays = 2048, .bounces = 0};
+  const IlluminationGrid truth = bake(volume, scene, settings, builtin_stages(), {.seed = 9}).light;
+  settings.target_rmse = 0.004;
+  for (const std::uint64_t seed : {1, 2, 3}) {
+    const BakeResult result = bake(volume, scene, settings, builtin_stages(), {.seed = seed});
+    EXPECT_LE(result.rmse_estimate, 0.0042);
+    EXPECT_LT(rms_difference(result.light, truth), 1.3 * result.rmse_estimate) << seed;
+  }
 }
 
 struct Making {

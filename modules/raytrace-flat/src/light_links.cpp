@@ -14,6 +14,7 @@
 #include "bright_parts.h"
 #include "link_solver.h"
 #include "ray_sums.h"
+#include "wide/calibrate_variance.h"
 #include "wide/net_mean.h"
 
 namespace isolux {
@@ -180,7 +181,10 @@ void LightLinks::reflect_last(const SceneParts& parts, const SampleSet& lamps, c
   quiet.progress = {};
   const SampleSet others = again_->lamp_light(parts, settings, solution.counters, quiet);
   const SampleSet again = again_->reflected(parts.soft(), others, light, solution, quiet);
-  wide::calibrate_variance(solution.samples, probes_, again, rays_);
+  if (rays_.empty())
+    wide::calibrate_variance(solution.samples, probes_, again);
+  else
+    wide::calibrate_variance_of_chosen(solution.samples, probes_, again, rays_);
 }
 
 SampleSet LightLinks::reflected(const Scene& scene, const SampleSet& lamps, const TargetLight& light,

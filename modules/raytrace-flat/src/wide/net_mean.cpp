@@ -4,10 +4,10 @@
 
 #include <algorithm>
 #include <limits>
-#include <map>
 #include <numeric>
 
 #include "morton.h"
+#include "wide/calibrate_variance.h"
 
 namespace isolux::wide {
 namespace {
@@ -75,72 +75,6 @@ std::vector<std::size_t> choose_probes(const Sites& sites) {
     if (sites.normals[i] != Vec3f(0.0f)) probes.push_back(i);
   }
   return probes;
-}
-
-namespace {
-
-/// What some probes' variances say and what their differences show.
-class Tally {
- public:
-  void add(double variance, double found) {
-    expected_ += variance;
-    squares_ += variance * variance;
-    found_ += found;
-    ++count_;
-  }
-  [[nodiscard]] std::size_t count() const { return count_; }
-  [[nodiscard]] double mean_expected() const { return expected_ / double(std::max<std::size_t>(count_, 1)); }
-  /// What variances are to be multiplied by. Where a few probes have nearly all of the noise, as in a small lamp's
-  /// penumbra, they count as so many, and what is thought without them as some more.
-  [[nodiscard]] double scale(double without, double part_seen = 1.0) const {
-    constexpr double kCountsAs = 4.0;
-    if (!(expected_ > 0.0)) return without;
-    const double probes = part_seen * (expected_ * expected_ / squares_);
-    return (probes * (found_ / expected_) + kCountsAs * without) / (probes + kCountsAs);
-  }
-
- private:
-  double expected_ = 0.0;
-  double squares_ = 0.0;
-  double found_ = 0.0;
-  std::size_t count_ = 0;
-};
-
-}  // namespace
-
-void calibrate_variance(SampleSet& samples, std::span<const std::size_t> probes, const SampleSet& again,
-                        std::span<const std::uint32_t> rays) {
-  constexpr std::size_t kEnough = 64;
-  constexpr double kUsual = 0.3;  // half the sky's, twice that of lamps aimed at
-  const auto channels = std::size_t(samples.channels);
-  Tally everywhere;
-  for (const float variance : samples.variance)
-    if (variance != kUnknownVariance) everywhere.add(double(variance), 0.0);
-  Tally all;
-  std::map<std::uint32_t, Tally> by_rays;
-  for (std::size_t k = 0; k < probes.size(); ++k) {
-    const auto variance = double(samples.variance[probes[k]]);
-    if (variance == double(kUnknownVariance)) return;
-    double found = 0.0;
-    for (std::size_t c = 0; c < channels; ++c) {
-      const double d = double(samples.radiance[probes[k] * channels + c]) - double(again.radiance[k * channels + c]);
-      found += 0.5 * d * d / double(channels);
-    }
-    all.add(variance, found);
-    if (!rays.empty()) by_rays[rays[probes[k]]].add(variance, found);
-  }
-  const double noise = everywhere.mean_expected();
-  const double scale = all.scale(kUsual, noise > 0.0 ? std::min(1.0, all.mean_expected() / noise) : 1.0);
-  std::map<std::uint32_t, double> scales;
-  for (const auto& [count, tally] : by_rays)
-    if (tally.count() >= kEnough) scales[count] = tally.scale(scale);
-  for (std::size_t site = 0; site < samples.variance.size(); ++site) {
-    if (samples.variance[site] == kUnknownVariance) continue;
-    const auto own = scales.empty() ? scales.end() : scales.find(rays[site]);
-    const auto by = float(own != scales.end() ? own->second : scale);
-    samples.variance[site] *= by;
-    if (!samples.lamps_variance.empty()) samples.lamps_variance[site] *= by;
-  }
 }
 
 std::uint64_t probe_seed(std::uint64_t seed) { return mix_bits(seed ^ 0x9E3779B97F4A7C15ull); }

@@ -52,12 +52,6 @@ void tell_lamps_apart(SampleSet& samples, const SampleSet& lamps);
 /// few, one of 64 of many.
 [[nodiscard]] std::vector<std::size_t> choose_probes(const Sites& sites);
 
-/// Scales the variances of `samples` so that on the probes they add up to what the difference of two results with
-/// independent random numbers shows. `again` holds the second results of `probes`. Where sites have different numbers
-/// of rays (one a site; empty: all the same), those of a number with enough probes have a scale of their own.
-void calibrate_variance(SampleSet& samples, std::span<const std::size_t> probes, const SampleSet& again,
-                        std::span<const std::uint32_t> rays = {});
-
 /// The seed of the second results.
 [[nodiscard]] std::uint64_t probe_seed(std::uint64_t seed);
 
