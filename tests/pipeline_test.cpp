@@ -7,6 +7,7 @@
 #include <isolux/volume_io/read.h>
 
 #include <cmath>
+#include <filesystem>
 #include <glm/geometric.hpp>
 
 namespace isolux {
@@ -150,6 +151,7 @@ TEST(LightFile, KeepsWhatLetsLightBeReadFinely) {
     const std::string path = testing::TempDir() + "detail.nrrd";
     write_light(light, path, volume.space);
     const LightFile back = read_light(path);
+    std::filesystem::remove(path);
     EXPECT_EQ(back.grid.values, light.grid.values);
     EXPECT_EQ(back.grid.detail.slopes, light.grid.detail.slopes);
     const LightReader before(volume, light.grid);
@@ -177,6 +179,7 @@ TEST(Bake, FitsKnownIsovaluesAloneAndInBricks) {
     const std::string path = testing::TempDir() + "range.nrrd";
     write_light(light, path, volume.space, {.compress = true});
     const LightFile back = read_light(path);
+    std::filesystem::remove(path);
     ASSERT_TRUE(back.grid.detail.isovalues.has_value());
     EXPECT_EQ(back.grid.detail.isovalues->low, range.low);
     const LightReader reader(volume, back.grid, TexelStorage::kBricks);

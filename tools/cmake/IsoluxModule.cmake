@@ -232,6 +232,15 @@ function(isolux_module name)
   endif()
 endfunction()
 
+# The tests of a program of GoogleTest's, and properties they have besides. What they write lies in the build: another
+# user's, or another build's, has the same names.
+function(isolux_discover_tests program timeout)
+  set(folder ${CMAKE_CURRENT_BINARY_DIR}/tmp)
+  file(MAKE_DIRECTORY ${folder})
+  gtest_discover_tests(${program} NO_PRETTY_VALUES DISCOVERY_TIMEOUT 60 PROPERTIES TIMEOUT ${timeout} ENVIRONMENT TEST_TMPDIR=${folder}
+    ENVIRONMENT_MODIFICATION TMPDIR=set:${folder} ${ARGN})
+endfunction()
+
 function(_isolux_programs name id test_packages bench_packages)
   file(GLOB tests CONFIGURE_DEPENDS tests/*.cpp)
   if(ISOLUX_TESTS AND tests)
@@ -241,7 +250,7 @@ function(_isolux_programs name id test_packages bench_packages)
     target_link_libraries(${program} PRIVATE isolux::${id} GTest::gtest_main GTest::gmock)
     isolux_flags(${program})
     isolux_link(${program} PRIVATE ${test_packages})
-    gtest_discover_tests(${program} DISCOVERY_TIMEOUT 60 PROPERTIES TIMEOUT 600)
+    isolux_discover_tests(${program} 600)
   endif()
   if(ISOLUX_BENCHES)
     file(GLOB benches CONFIGURE_DEPENDS benches/*.cpp)
