@@ -10,8 +10,7 @@
 
 namespace isolux {
 
-/// Where sites at texels sit, to the bit: in the volume's index space, within its box, which oblique axes leave by a
-/// rounding at the voxels of its faces.
+/// Where sites at texels sit, to the bit: in the volume's index space, within its box.
 class TexelPositions {
  public:
   TexelPositions(const Lattice& volume, const Lattice& texels)

@@ -4,11 +4,26 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 #include <limits>
 
 namespace isolux {
+namespace {
+
+/// How many times `axis` the other one is, if it runs along it but for the rounding of its three numbers.
+std::optional<double> steps_along(const Vec3& other, const Vec3& axis) {
+  const Vec3 lengths = glm::abs(axis);
+  const int longest = lengths.x >= lengths.y ? (lengths.x >= lengths.z ? 0 : 2) : (lengths.y >= lengths.z ? 1 : 2);
+  const double steps = other[longest] / axis[longest];
+  const Vec3 off = glm::abs(other - axis * steps);
+  const double rounding = 2.0 * std::numeric_limits<double>::epsilon() * std::fabs(other[longest]);
+  if (!(std::max({off.x, off.y, off.z}) <= rounding)) return {};
+  return steps;
+}
+
+}  // namespace
 
 Vec3 IndexToWorld::index(const Vec3& world) const { return glm::inverse(axes) * (world - origin); }
 
@@ -98,7 +113,15 @@ Lattice voxel_lattice(const Lattice& volume) { return volume; }
 
 IndexToWorld index_to_index(const Lattice& from, const Lattice& to) {
   const Mat3 inverse = glm::inverse(to.frame.axes);
-  return {.origin = inverse * (from.frame.origin - to.frame.origin), .axes = inverse * from.frame.axes};
+  IndexToWorld map{.origin = inverse * (from.frame.origin - to.frame.origin), .axes = inverse * from.frame.axes};
+  // Rounding in the inverse of oblique axes would put grid points of one lattice beside those of the other, into cells
+  // that they only touch. Straight axes keep their zeros.
+  for (int a = 0; a < 3; ++a) {
+    const Vec3 along(a == 0, a == 1, a == 2);
+    const std::optional<double> steps = steps_along(from.frame.axes[a], to.frame.axes[a]);
+    if (steps && map.axes[a] != along * map.axes[a][a]) map.axes[a] = along * *steps;
+  }
+  return map;
 }
 
 bool has_axes_of(const Lattice& one, const Lattice& other) {

@@ -8,6 +8,7 @@
 #include <cstddef>
 #include <limits>
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "test_volumes.h"
@@ -64,6 +65,25 @@ TEST(TexelSampler, GivesByRangesTheSitesThatItGivesOfAll) {
       count += next;
     }
     EXPECT_EQ(count, all.size()) << of.name;
+  }
+}
+
+// At voxels beside the box's faces a mask may have no gradient, and a little off them one that is rounding alone.
+TEST(TexelSampler, LightsTheSameVoxelsOfAMaskWhateverItsAxes) {
+  const auto sites_with = [](const IndexToWorld& frame) {
+    Volume volume = index_volume({12, 12, 12}, [](const Vec3& p) {
+      return double(int(p.x * 5.0 + p.y * 3.0 + p.z * 7.0 + p.x * p.y) % 11 < 2);
+    });
+    const std::span<const float> values = volume.values.values();
+    volume.values = Grid<float>({.size = Index3(12), .frame = frame}, std::vector<float>(values.begin(), values.end()));
+    const SiteRequest request{.texels = voxel_lattice(volume.lattice())};
+    return samplers().create("texels")->sample(volume, request, isolux::Run{}).positions;
+  };
+  const std::vector<Vec3f> straight = sites_with({});
+  EXPECT_LT(straight.size(), 12u * 12u * 12u);
+  for (const double unit : {1.0, 3.0, 1e-6, 1e6}) {
+    const Mat3 axes = Mat3(1.0, 0.1, 0.0, 0.0, 0.6, 0.2, 0.1, 0.0, 1.7) * unit;
+    EXPECT_EQ(sites_with({.origin = Vec3(3.0, -4.0, 5.0) * unit, .axes = axes}), straight) << unit;
   }
 }
 

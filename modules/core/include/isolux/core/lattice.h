@@ -64,7 +64,8 @@ void require_values(const Lattice& lattice, std::size_t values);
 /// the box of an axis with n points: (u (n - 1) + 0.5)/n.
 [[nodiscard]] Lattice voxel_lattice(const Lattice& volume);
 
-/// The affine map from `from`'s index space to `to`'s index space.
+/// The affine map from `from`'s index space to `to`'s index space. Along axes that both share it has no rounding of the
+/// others': grid points of `voxel_lattice` are the volume's, as floats, however oblique the axes are.
 [[nodiscard]] IndexToWorld index_to_index(const Lattice& from, const Lattice& to);
 /// Whether each axis runs along the other's axis of the same number, but for rounding.
 [[nodiscard]] bool has_axes_of(const Lattice& one, const Lattice& other);
