@@ -214,6 +214,42 @@ TEST(Direct, DenoisesLampsThatAreNoisyTooAndLeavesThemBlunt) {
   EXPECT_NE(denoised_texels(volume, samples), denoised_texels(volume, all));
 }
 
+/// What 16 rays of each texel say of a sky that a slope hides less and less of, up to none: no sample is brighter than
+/// 1 in red, half and a quarter of that in green and blue.
+SampleSet sky_above_a_slope(const Volume& volume) {
+  SampleSet samples;
+  samples.channels = 3;
+  for (int q = 0; q < 12 * 12 * 12; ++q) {
+    const Index3 cell(q % 12, q / 12 % 12, q / 144);
+    const double open = std::min(1.0, 0.4 * cell.x);
+    RandomStream random(9, std::uint64_t(q));
+    int free = 0;
+    for (int ray = 0; ray < 16; ++ray) free += random.uniform_double() < open ? 1 : 0;
+    const float e = float(free) / 16.0f;
+    add_sample(samples, volume, Vec3(cell) + 0.5, {e, 0.5f * e, 0.25f * e}, 0.4375f * e * (1.0f - e) / 15.0f);
+  }
+  return samples;
+}
+
+std::array<float, 3> brightest_of(const std::vector<float>& light) {
+  std::array<float, 3> brightest{};
+  for (std::size_t v = 0; v < light.size(); ++v) brightest[v % 3] = std::max(brightest[v % 3], light[v]);
+  return brightest;
+}
+
+TEST(Direct, DenoisesNoTexelBrighterThanTheBrightestSample) {
+  const Volume volume = ramp_volume({13, 13, 13});
+  SampleSet samples = sky_above_a_slope(volume);
+  const std::array<float, 3> most = brightest_of(samples.radiance);
+  const std::array<float, 3> found = brightest_of(denoised_texels(volume, samples));
+  for (std::size_t c = 0; c < 3; ++c) EXPECT_LE(found[c], most[c]) << c;
+  // Of lamps told apart, on a black rest, they are the lamps' own.
+  samples.lamps = samples.radiance;
+  samples.lamps_variance = samples.variance;
+  const std::array<float, 3> lamps = brightest_of(denoised_texels(volume, samples));
+  for (std::size_t c = 0; c < 3; ++c) EXPECT_LE(lamps[c], most[c]) << c;
+}
+
 TEST(Direct, DenoisesDimLightAsItDoesBrightLight) {
   const Volume volume = ramp_volume({13, 13, 13});
   const std::vector<float> usual = denoised_texels(volume, noisy_step(volume, 0.2));

@@ -4,6 +4,7 @@
 #include <isolux/resample/resampler.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <optional>
@@ -53,12 +54,15 @@ class Direct final : public Resampler {
     require_texels(texels);
     if (!options_.denoise) return told_by_bytes(placed(volume, samples, samples.radiance, texels, run));
     const DenoisedLight light = denoised_light(volume, samples, texels, run);
+    const std::vector<float>& before = light.lamps.empty() ? samples.radiance : light.noisy_rest;
     IlluminationGrid result = placed(volume, samples, light.rest, texels, run);
-    if (options_.sharpen) {
-      const std::vector<float>& before = light.lamps.empty() ? samples.radiance : light.noisy_rest;
-      sharpen(result, placed(volume, samples, before, texels, run), run);
+    if (options_.sharpen) sharpen(result, placed(volume, samples, before, texels, run), run);
+    keep_to_brightest(before, result);
+    if (!light.lamps.empty()) {
+      IlluminationGrid lamps = placed(volume, samples, light.lamps, texels, run);
+      keep_to_brightest(samples.lamps, lamps);
+      add(lamps, result);
     }
-    if (!light.lamps.empty()) add(placed(volume, samples, light.lamps, texels, run), result);
     return told_by_bytes(std::move(result));
   }
 
@@ -98,6 +102,16 @@ class Direct final : public Resampler {
     IlluminationGrid grid = unlit_grid(texels, samples.channels);
     place(volume, samples.sites, light, grid, run);
     return grid;
+  }
+
+  /// What is fitted or sharpened may overshoot: no texel is brighter than the brightest of the samples, by channel.
+  static void keep_to_brightest(const std::vector<float>& samples, IlluminationGrid& light) {
+    const auto channels = std::size_t(light.channels);
+    std::array<float, 3> brightest{};
+    for (std::size_t v = 0; v < samples.size(); ++v)
+      brightest[v % channels] = std::max(brightest[v % channels], samples[v]);
+    for (std::size_t v = 0; v < light.values.size(); ++v)  // NaN, of texels without light, stays
+      light.values[v] = std::min(light.values[v], brightest[v % channels]);
   }
 
   static void add(const IlluminationGrid& part, IlluminationGrid& sum) {
