@@ -99,7 +99,7 @@ ValueRange require_traceable(const Volume& volume) {
       volume.name, range.low, range.high, span, kLeast, kMost));
 }
 
-void require_lightable(const Volume& volume, const BakeSettings& settings) {
+void require_level_sets(const Volume& volume, const BakeSettings& settings) {
   const ValueRange range = require_traceable(volume);
   const std::optional<ValueRange>& wanted = settings.isovalues;
   if (range.low == range.high) {
@@ -111,6 +111,10 @@ void require_lightable(const Volume& volume, const BakeSettings& settings) {
     throw InvalidInput(fmt::format("isovalue range {}:{}: the values of {} go from {} to {}", wanted->low, wanted->high,
                                    volume.name, range.low, range.high));
   }
+}
+
+void require_lightable(const Volume& volume, const BakeSettings& settings) {
+  require_level_sets(volume, settings);
   require_memory(texel_lattice(volume.lattice(), settings).size);
 }
 

@@ -41,8 +41,9 @@ void require_settings(const BakeSettings& settings);
 /// far apart that floats do not hold what rays are worked out by
 ValueRange require_traceable(const Volume& volume);
 
-/// \throw InvalidInput if the volume is not traceable or constant, the isovalues asked for lie outside its values, or
-/// the texels take more memory than the machine has
+/// \throw InvalidInput if the volume is not traceable or constant, or the isovalues asked for lie outside its values
+void require_level_sets(const Volume& volume, const BakeSettings& settings);
+/// The same, and \throw InvalidInput if the texels take more memory than the machine has
 void require_lightable(const Volume& volume, const BakeSettings& settings);
 
 /// What a sampler is asked for, but for the number of sites a texel. Of known isovalues sites at texels are those that

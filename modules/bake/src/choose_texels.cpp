@@ -11,6 +11,7 @@
 #include <glm/geometric.hpp>
 #include <limits>
 
+#include "bake_parts.h"
 #include "checked_stages.h"
 #include "resampling_choice.h"
 #include "texel_readings.h"
@@ -174,7 +175,7 @@ Index3 texels_by_ratio(const Lattice& volume, double ratio) {
 
 TexelChoice choose_texels(const Volume& volume, const Scene& scene, const BakeSettings& settings, double target,
                           const Stages& stages, const Run& run) {
-  require_usable(volume);
+  require_level_sets(volume, settings);
   if (settings.lattice == TexelLattice::kVoxels)
     throw InvalidInput("texels at the voxels: their number is the volume's and cannot be chosen");
   if (scene.sides == LitSides::kBoth) return choose_for_both(volume, scene, settings, target, stages, run);

@@ -188,6 +188,29 @@ TEST(ChooseTexels, KnowsUnevenVolumesAndKnownIsovalues) {
   EXPECT_EQ(texels_by_ratio({.size = {41, 9, 2}, .frame = {}}, 1.5), Index3(60, 12, 2));
 }
 
+// In the words of a bake.
+TEST(ChooseTexels, RefusesConstantVolumesAndIsovaluesBeyondTheValues) {
+  const auto why = [](const Volume& volume, const BakeSettings& settings) {
+    const auto message = [](const auto& call) {
+      try {
+        call();
+      } catch (const InvalidInput& error) {
+        return std::string(error.what());
+      }
+      return std::string();
+    };
+    const std::string chosen = message([&] { (void)choice(volume, 0.1, settings); });
+    EXPECT_EQ(chosen, message([&] { (void)bake(volume, {}, settings, stages(), {}); }));
+    return chosen;
+  };
+  Volume constant{.values = Grid<float>({.size = Index3(9), .frame = {}}), .name = "threes"};
+  for (float& value : constant.values.values()) value = 3.0f;
+  EXPECT_EQ(why(constant, without_bounces()), "threes: every voxel is 3; a constant volume has no level set to light");
+  BakeSettings beyond = without_bounces();
+  beyond.isovalues = ValueRange{100.0f, 200.0f};
+  EXPECT_NE(why(read_volume("gen:gyroid:9"), beyond), "");
+}
+
 TEST(ChooseTexels, RefusesTexelsAtTheVoxels) {
   BakeSettings settings = without_bounces();
   settings.lattice = TexelLattice::kVoxels;
