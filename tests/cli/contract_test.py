@@ -95,6 +95,10 @@ class Bake(CommandLineTest):
         self.bake("--texels", "auto", "--bounces", 0, "--report", "report.json")
         self.assertEqual(nrrd_header(self.path("light.nrrd"))[0]["sizes"], "4 4 4")  # white: the fewest will do
         self.assertLess(self.report()["texel_error"], 0.05)
+        # Nobody asked for an error: what is sought without a word is no matter for a warning.
+        sought = self.succeed("bake", "gen:noise:6", "-o", "noise.nrrd", "--texels", "auto", "--bounces", 0)
+        self.assertNotIn("warning", sought.stderr)
+        self.assertRegex(sought.stderr, r"texels, wrong by about \S+ between them \(sought 0.05\)")
         self.bake("--lattice", "voxels")
         fields = nrrd_header(self.path("light.nrrd"))[0]
         self.assertEqual(fields["sizes"], "16 16 16")
@@ -107,6 +111,8 @@ class Bake(CommandLineTest):
         # Whoever asked for an error hears that it is missed, as of a --time.
         missed = self.succeed("bake", "gen:noise:6", "-o", "noise.nrrd", "--samples", 20, "--rmse", 0.001, "--bounces", 0, "--quiet")
         self.assertRegex(missed.stderr, r"^isolux: warning: the error asked is not reached: about \S+ of 0.001[^\n]*\n$")
+        rough = self.succeed("bake", "gen:noise:6", "-o", "noise.nrrd", "--texels", "auto", "--rmse", 0.02, "--bounces", 0, "--quiet")
+        self.assertRegex(rough.stderr, r"^isolux: warning: the error asked is not reached: light is wrong by about \S+ of 0.02 between \S+ texels[^\n]*\n$")
         self.bake("--rmse", 0.02, "--error-grid", "error.nrrd", "--report", "report.json", volume="gen:gyroid:17")
         fields, _, data = nrrd_header(self.path("error.nrrd"))
         self.assertEqual(fields["isolux.quantity"], "standard error of irradiance/pi")

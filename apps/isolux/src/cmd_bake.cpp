@@ -100,8 +100,15 @@ void choose_size(const BakeOptions& options, const Volume& volume, const Scene& 
       "texels", [&] { return choose_texels(volume, scene, settings, target, session.stages, session.run); });
   settings.texels = chosen.texels;
   session.report["texel_error"] = chosen.error;
-  session.say(fmt::format("{}x{}x{} texels, wrong by about {:.3f} between them (asked {})", chosen.texels.x,
-                          chosen.texels.y, chosen.texels.z, chosen.error, target));
+  const std::string texels = fmt::format("{}x{}x{} texels", chosen.texels.x, chosen.texels.y, chosen.texels.z);
+  if (options.rmse > 0.0 && chosen.error > kNear * target)
+    session.warn(fmt::format(
+        "the error asked is not reached: light is wrong by about {:.4f} of {} between {}, the best of up to two a cell "
+        "and axis; --texels or --texels-a-cell takes more",
+        chosen.error, target, texels));
+  else
+    session.say(fmt::format("{}, wrong by about {:.3f} between them ({} {})", texels, chosen.error,
+                            options.rmse > 0.0 ? "asked" : "sought", target));
 }
 
 /// Says beforehand what the system would say after minutes, by killing the program.
