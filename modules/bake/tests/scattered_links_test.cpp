@@ -73,6 +73,25 @@ TEST(ScatteredLinks, WhiteSurfacesAreWhite) {
 }
 
 // docs/theory.md, "Exact answers", 7. Light changes with the isovalue alone and twofold from .55 to .65.
+// Texels between a ball of 1000 and noise below 1 are read along level sets far from those of their samples: lines over
+// the isovalue led to four times the light that there is.
+TEST(ScatteredLinks, ReflectNoMoreLightThanThereIs) {
+  constexpr int kSize = 12;
+  Volume volume;
+  volume.values = Grid<float>(read_volume("gen:noise:12").lattice());
+  RandomStream random(1, 0, 0);
+  for (int k = 0; k < kSize; ++k)
+    for (int j = 0; j < kSize; ++j)
+      for (int i = 0; i < kSize; ++i) {
+        const Vec3 from_middle = Vec3(i, j, k) - 6.0;
+        volume.values(i, j, k) = (glm::length(from_middle) < 4.0 ? 1000.0f : 0.0f) + random.uniform_float();
+      }
+  for (const int bounces : {2, kAllBounces}) {
+    const BakeResult result = lit(volume, grey(0.8f, 0.0f, 1.0f), fitted(4, bounces));
+    EXPECT_LE(result.light.detail.ceiling, 1.0f) << bounces;
+  }
+}
+
 TEST(ScatteredLinks, MatchTheOpenIntegratingSphere) {
   const Volume volume = read_volume("gen:cavity:33");
   const BakeResult result = lit(volume, grey(0.8f, 0.0f, 1.0f), fitted(16, kAllBounces));

@@ -83,6 +83,10 @@ TargetLight LightLinks::Solver::before_last(const SolveSettings& settings, std::
                                             Solution& solution) {
   e_ = straight_;
   std::vector<float> next;
+  const bool is_white = is_nearly_white();
+  // Lines over the isovalue, which scattered sites are read from, lead beyond the light that there is. Only the last
+  // reading is bounded: what iterates is to stay linear, or it does not settle.
+  const std::vector<float> most = is_white || !reads_sites() ? most_light() : std::vector<float>{};
   if (settings.bounces != kAllBounces) {
     bool settled = false;
     for (solution.sweeps = 1; solution.sweeps < settings.bounces && !settled; ++solution.sweeps) {
@@ -90,24 +94,28 @@ TargetLight LightLinks::Solver::before_last(const SolveSettings& settings, std::
       settled = differ_by_rounding(next, e_);
       e_.swap(next);
     }
-    return at_targets(e_);
+    return bounded(at_targets(e_), most);
   }
   if (start.size() == links_.sites_.isovalues.size() * channels_)
     for (std::size_t i = 0; i < e_.size(); ++i)
       e_[i] = start[numbers_.empty() ? i : numbers_[i / channels_] * channels_ + i % channels_];
-  const std::vector<float> most = is_nearly_white() ? most_light() : std::vector<float>{};
   ends_one_of_ = std::max<std::size_t>(settings.ends_one_of, 1);
   Anderson anderson(run_);
   while (solution.sweeps < settings.most_sweeps) {
     ++solution.sweeps;
     reflect(at_targets(e_), next);
     solution.change = anderson.step(e_, next);
-    if (!most.empty()) clamp_light(most, anderson.last_image());
+    if (is_white) clamp_light(most, anderson.last_image());
     if (run_.progress) run_.progress("bounces", double(solution.sweeps) / double(settings.most_sweeps));
     if (solution.change <= settings.tolerance) break;
   }
   if (run_.progress) run_.progress("bounces", 1.0);
-  return at_targets(e_);
+  return bounded(at_targets(e_), most);
+}
+
+TargetLight LightLinks::Solver::bounded(TargetLight light, const std::vector<float>& most) {
+  std::copy(most.begin(), most.end(), light.most.begin());
+  return light;
 }
 
 void LightLinks::Solver::clamp_light(const std::vector<float>& most, const std::vector<float>& image) {

@@ -43,8 +43,10 @@ class LightLinks::Solver {
   /// Whether some surface gives back nearly all light.
   [[nodiscard]] bool is_nearly_white() const;
   /// What no site's light exceeds, by channel: e_i is what comes straight and at most the part that hits times the most
-  /// light there is, so the most is at most the largest of straight_i / (1 - that part). One sweep. \pre reads_sites()
+  /// light there is, so the most is at most the largest of straight_i / (1 - that part). One sweep.
   [[nodiscard]] std::vector<float> most_light();
+  /// `light` where it says nothing beyond 0 to `most` (empty: no bound).
+  [[nodiscard]] static TargetLight bounded(TargetLight light, const std::vector<float>& most);
   /// Takes `image`, found without acceleration, where this has left e_ outside 0 to `most`.
   void clamp_light(const std::vector<float>& most, const std::vector<float>& image);
   /// The light without reflections and what one reflection of `light` adds, into `next`, whatever it holds.
