@@ -125,8 +125,9 @@ void foresee_memory(const BakeOptions& options, const Volume& volume, const Scen
     less = "--resampler direct";
   if (iterates(settings) && settings.trace.bounces != 0) less += ", --bounce-method paths";
   if (!settings.isovalues) less += " or an --iso-range";
-  session.warn(fmt::format("this takes about {:.1f} GB of memory beside the volume, and {:.1f} GB are free: {} take less",
-                           bytes * 1e-9, left * 1e-9, less));
+  session.warn(
+      fmt::format("this takes about {:.1f} GB of memory beside the volume, and {:.1f} GB are free: {} take less",
+                  bytes * 1e-9, left * 1e-9, less));
 }
 
 /// What a bake takes memory for, and by which words it takes less.
@@ -216,10 +217,10 @@ void add_bake_command(CLI::App& program, Session& session) {
   command.add_option("--lattice", options->lattice, "texels at the cell centres (default) or at the voxels")
       ->check(CLI::IsMember({"cells", "voxels"}));
   command
-      .add_option(
-          "--bounce-method", options->bounce_method,
-          "iterated: trace once, keep the hits and iterate on the grid (default for "
-          "sites at texels and --resampler fit, unless --tracer, --set tracer... or scattered --sites need is given); paths: unbiased")
+      .add_option("--bounce-method", options->bounce_method,
+                  "iterated: trace once, keep the hits and iterate on the grid (default for "
+                  "sites at texels and --resampler fit, unless --tracer, --set tracer... or scattered --sites need is "
+                  "given); paths: unbiased")
       ->check(CLI::IsMember({"iterated", "paths"}));
   command
       .add_option("--rmse", options->rmse,

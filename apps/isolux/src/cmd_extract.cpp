@@ -220,9 +220,9 @@ void add_extract_command(CLI::App& program, Session& session) {
   options->light.add_to(command, session);
   options->side.add_to(
       command, "whose light, and where the normals point: outer (default), or inner, which --light needs to have");
-  command.add_flag(
-      "--exact-light", options->exact_light,
-      "trace the light at the vertices; with --light too, that light's scene is taken and, where they are few, half the rays do");
+  command.add_flag("--exact-light", options->exact_light,
+                   "trace the light at the vertices; with --light too, that light's scene is taken and, where they are "
+                   "few, half the rays do");
   options->trace.add_to(command, session, "a vertex");
   options->outer.add_to(command,
                         "the side that is outside: lower or higher values (default: what the light or scene says)");

@@ -24,13 +24,16 @@ class ProgressPrinter {
     const double seconds = watch_.seconds();
     if (terminal_) {
       show_bar(fraction, seconds);
-    } else if (seconds > 1.0 && int(fraction * 10.0) > tenths_) {
+    } else if (seconds - last_shown_ > kPause && int(fraction * 10.0) > tenths_) {
+      last_shown_ = seconds;
       tenths_ = int(fraction * 10.0);
       tell(fmt::format("{}: {} %, {:.1f} s\n", stage_, tenths_ * 10, seconds));
     }
   }
 
  private:
+  static constexpr double kPause = 2.0;  ///< seconds between lines, where each stays
+
   void show_bar(double fraction, double seconds) {
     constexpr int kWidth = 30;
     const bool done = fraction >= 1.0;

@@ -112,12 +112,11 @@ TEST(BakeMemory, IsForeseen) {
     const BakeSettings& settings;
   };
   const Scene grey;
-  for (const Case& c : {Case{"grey", grey, settings}, Case{"coloured", coloured, settings},
-                        Case{"sunny", sunny, settings}, Case{"both sides", both, settings},
-                        Case{"without bounces", coloured, straight}, Case{"paths", coloured, paths},
-                        Case{"denoised", grey, denoised}, Case{"denoised, sunny", sunny, denoised},
-                        Case{"fit", grey, fit}, Case{"scattered", coloured, scattered},
-                        Case{"towards an error", grey, towards}, Case{"by need", grey, need}}) {
+  for (const Case& c :
+       {Case{"grey", grey, settings}, Case{"coloured", coloured, settings}, Case{"sunny", sunny, settings},
+        Case{"both sides", both, settings}, Case{"without bounces", coloured, straight}, Case{"paths", coloured, paths},
+        Case{"denoised", grey, denoised}, Case{"denoised, sunny", sunny, denoised}, Case{"fit", grey, fit},
+        Case{"scattered", coloured, scattered}, Case{"towards an error", grey, towards}, Case{"by need", grey, need}}) {
     const double ratio = had_over_foreseen(volume, c.scene, c.settings);
     EXPECT_GT(ratio, 0.6) << c.name;
     EXPECT_LT(ratio, 1.3) << c.name;

@@ -22,8 +22,8 @@ struct PointLight {
 
 /// The same for points of one isosurface, with a light of this scene as control variate: what the rays found less what
 /// the light says is smoothed over the points around, as far as it is the rays' noise, and added to what the light
-/// says. Where rays are few about half of them then give the same error (docs/measured/resampling.md), at the price of a
-/// bias where the light is wrong in detail. Smoothing costs some microseconds a point. \throw as bake()
+/// says. Where rays are few about half of them then give the same error (docs/measured/resampling.md), at the price of
+/// a bias where the light is wrong in detail. Smoothing costs some microseconds a point. \throw as bake()
 [[nodiscard]] PointLight light_points(const Volume& volume, const Scene& scene, std::span<const Vec3f> world_positions,
                                       const TraceSettings& settings, const BackendChoice& tracer, const Stages& stages,
                                       const Run& run, const LightReader& light);
