@@ -10,10 +10,11 @@
 namespace isolux {
 namespace {
 
-constexpr std::size_t kTexelsAHeldOut = 8;
 /// Where little light is wrong by much, as in small grids, few places miss it.
 constexpr double kFewestPlaces = 2048.0;
 constexpr double kMostPlaces = 4096.0;
+/// However few rays a bake has.
+constexpr std::size_t kPlacesAlways = 64;
 /// Of a place, if there are so many; four times as many towards errors below kRoughError, which noise of fewer hides.
 constexpr double kPathsOfEach = 64.0;
 constexpr double kRoughError = 0.012;
@@ -103,7 +104,7 @@ std::size_t places_to_judge_by(std::size_t sites, const Scene& scene, const Bake
   const double paths = paths_to_judge_by(sites, settings);
   const double places = std::clamp(paths / (kPathsOfEach * (is_fine ? 4.0 : 1.0)), kFewestPlaces, kMostPlaces);
   const double affordable = std::min(places, paths / kFewestPathsOfEach) / double(share_by_length(scene));
-  return std::max<std::size_t>(1, std::size_t(affordable));
+  return std::max(kPlacesAlways, std::size_t(affordable));
 }
 
 TraceSettings paths_of_each(std::size_t places, std::size_t sites, const Scene& scene, const BakeSettings& settings) {
@@ -117,7 +118,7 @@ TraceSettings paths_of_each(std::size_t places, std::size_t sites, const Scene& 
 }
 
 std::vector<std::size_t> held_out_texels(const Lattice& texels, const TexelSiteMaker& sites, std::size_t most,
-                                         const Run& run) {
+                                         std::size_t one_of, const Run& run) {
   const std::size_t count = texels.count();
   const auto from_shares = [&](std::size_t shares) {
     std::vector<std::size_t> drawn = one_of_each_share(count, shares, run);
@@ -132,7 +133,7 @@ std::vector<std::size_t> held_out_texels(const Lattice& texels, const TexelSiteM
   const std::size_t first = std::min(most, count);
   std::vector<std::size_t> drawn = from_shares(first);
   const double can_be_lit = double(drawn.size()) / double(first);
-  const double wanted = std::min(double(most), std::ceil(can_be_lit * double(count) / double(kTexelsAHeldOut)));
+  const double wanted = std::min(double(most), std::ceil(can_be_lit * double(count) / double(one_of)));
   if (can_be_lit > 0.0) return from_shares(std::min(count, std::size_t(std::ceil(wanted / can_be_lit))));
   return drawn;
 }

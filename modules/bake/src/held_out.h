@@ -37,10 +37,10 @@ class HeldOut {
   TraceCounters counters_;
 };
 
-/// Texels to hold out, drawn at random, all that can be lit being equally likely: at most so many, or one of eight.
+/// Texels to hold out, drawn at random, all that can be lit being equally likely: at most so many, or one of `one_of`.
 /// \throw Cancelled
 [[nodiscard]] std::vector<std::size_t> held_out_texels(const Lattice& texels, const TexelSiteMaker& sites,
-                                                       std::size_t most, const Run& run);
+                                                       std::size_t most, std::size_t one_of, const Run& run);
 
 /// To judge a bake of `sites` sites: by how many places, if there are so many, all paths together being some twentieth
 /// of the time of a large one.

@@ -30,6 +30,7 @@ namespace {
 
 /// Enough for the error to some 5 %, if there are so many.
 constexpr std::size_t kMostHeldOut = 6144;
+constexpr std::size_t kTexelsAHeldOut = 8;
 constexpr int kMostRoundsByNeed = 16;
 /// A round that leaves more of the squared error than this has stalled; so many in a row are enough.
 constexpr double kProgress = 0.97;
@@ -61,7 +62,7 @@ class ByNeed {
     trace_wanted();
     TraceSettings judged = settings_.trace;
     judged.rays = settings_.target_rmse < 0.012 ? 128 : 32;
-    std::vector<std::size_t> drawn = held_out_texels(texels_, sites_, kMostHeldOut, run_);
+    std::vector<std::size_t> drawn = held_out_texels(texels_, sites_, kMostHeldOut, kTexelsAHeldOut, run_);
     const Sites some = sites_.make(drawn);
     const HeldOut held_out(volume_, scene_, some, std::move(drawn), judged, run_);
     int stalled = 0;

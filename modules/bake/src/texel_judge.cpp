@@ -10,11 +10,26 @@
 #include <vector>
 
 #include "held_out.h"
+#include "level_set_places.h"
 
 namespace isolux {
 namespace {
 
-/// e as it is read where the texels are.
+/// From so many on a root mean square is known to an eighth, 1 / sqrt(2 * 32), if errors are normal.
+constexpr std::size_t kFewestToJudgeBy = 32;
+
+/// Places, at most so many, that stand for what is read: texels, or of known level sets points of these. Few texels,
+/// and of labels special ones, lie on a level set.
+Sites places_to_judge(const Volume& volume, const Scene& scene, const BakeSettings& settings, const Lattice& texels,
+                      std::size_t most, const Run& run) {
+  const SiteRequest request{
+      .texels = texels, .isovalues = settings.isovalues, .outer = scene.outer, .gradient = settings.trace.gradient};
+  if (settings.isovalues) return level_set_places(volume, request, most, run);
+  const TexelSiteMaker maker(volume, request, run);
+  return maker.make(held_out_texels(texels, maker, most, 1, run));
+}
+
+/// e as it is read at the sites.
 std::vector<float> read_at(const Volume& volume, const Sites& sites, const IlluminationGrid& light, const Run& run) {
   const LightReader reader(volume, light, TexelStorage::kDense, run);
   const auto channels = std::size_t(light.channels);
@@ -45,19 +60,15 @@ void judge_texels(const Volume& volume, const Scene& scene, const BakeSettings& 
                   BakeResult& result) {
   const Stopwatch watch;
   const Lattice& texels = result.light.lattice;
-  const TexelSiteMaker maker(
-      volume,
-      {.texels = texels, .isovalues = settings.isovalues, .outer = scene.outer, .gradient = settings.trace.gradient},
-      run);
   const std::size_t most = places_to_judge_by(result.sites, scene, settings);
-  const Sites sites = maker.make(held_out_texels(texels, maker, most, run));
-  if (sites.size() == 0) return;
+  const Sites sites = places_to_judge(volume, scene, settings, texels, most, run);
+  if (sites.size() < kFewestToJudgeBy) return;
   std::vector<std::size_t> numbers(sites.size());
   std::iota(numbers.begin(), numbers.end(), std::size_t(0));
   const TraceSettings paths = paths_of_each(sites.size(), result.sites, scene, settings);
   const HeldOut held_out(volume, scene, sites, std::move(numbers), paths, run);
   const HeldOut::SquaredError squared = held_out.squared_error(read_at(volume, sites, result.light, run));
-  // Few texels can agree by chance.
+  // Places can agree by chance.
   result.rmse_estimate = std::sqrt(std::max(squared.mean, squared.standard_error));
   if (result.error) scale_errors(result.rmse_estimate, *result.error);
   add(result.counters, held_out.counters());

@@ -2,6 +2,7 @@
 
 #include <isolux/core/error.h>
 #include <isolux/core/parallel.h>
+#include <isolux/core/quantile.h>
 #include <isolux/core/random.h>
 
 #include <algorithm>
@@ -198,9 +199,7 @@ TargetLight LightLinks::Solver::sloped(const IlluminationGrid& grid) {
 }
 
 void LightLinks::Solver::measure_texels() {
-  double sum = 0.0;
-  for (const float isovalue : seen_.sites.isovalues) sum += double(isovalue);
-  middle_ = float(sum / double(std::max<std::size_t>(seen_.size(), 1)));
+  middle_ = quantile(seen_.sites.isovalues, 0.5);
   texels_ = isovalues_at(links_.volume_, links_.rounds_->targets->texels(), run_);
   for (float& isovalue : texels_) isovalue -= middle_;
 }

@@ -53,7 +53,7 @@ void FitRows::measure(const NearField& near_field, const SampleSet& set, const T
                       const FitTexels& texels, NearFieldUse use, const Run& run) {
   const auto ny = std::size_t(cells.size().y);
   const std::size_t lines = ny * std::size_t(cells.size().z);
-  std::vector<Sums> blocks(block_count(lines, kLinesABlock), Sums{});
+  std::vector<Terms> blocks(block_count(lines, kLinesABlock), Terms{});
   parallel_blocks(lines, kLinesABlock, run, "", [&](const Block& block) {
     for (std::size_t line = block.begin; line < block.end; ++line) {
       const wide::FitCells along = texels.cells_along(int(line % ny), int(line / ny));
@@ -75,21 +75,21 @@ void FitRows::measure(const NearField& near_field, const SampleSet& set, const T
       look(samples().subspan(r, count), texels.terms(), steps_, use, looks, &rows_[r], &weights_[r]);
       for (std::size_t i = r; i < r + count; ++i) {
         for (std::size_t t = 0; t < kOpennessTerms; ++t) blocks[block.index][t] += double(rows_[i].openness[t]);
-        blocks[block.index][kOpennessTerms] += double(weights_[i]);
       }
     }
   });
-  Sums sums{};
-  for (const Sums& block : blocks) {
-    for (std::size_t t = 0; t <= kOpennessTerms; ++t) sums[t] += block[t];
-  }
-  centre(sums, run);
+  Terms openness{};
+  for (const Terms& block : blocks)
+    for (std::size_t t = 0; t < kOpennessTerms; ++t) openness[t] += block[t];
+  centre(openness, run);
 }
 
-void FitRows::centre(const Sums& sums, const Run& run) {
+void FitRows::centre(const Terms& openness, const Run& run) {
   const auto count = double(size());
-  const double weight = sums[kOpennessTerms] / count;
-  for (std::size_t t = 0; t < kOpennessTerms; ++t) mean_openness_[t] = sums[t] / count;
+  const float most = most_weight(weights_);
+  double weight = 0.0;
+  for (float& w : weights_) weight += double(w = std::min(w, most)) / count;
+  for (std::size_t t = 0; t < kOpennessTerms; ++t) mean_openness_[t] = openness[t] / count;
   parallel_blocks(size(), 65536, run, "", [&](const Block& block) {
     for (std::size_t r = block.begin; r < block.end; ++r) {
       for (std::size_t t = 0; t < kOpennessTerms; ++t) rows_[r].openness[t] -= float(mean_openness_[t]);

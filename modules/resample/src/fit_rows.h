@@ -32,18 +32,17 @@ class FitRows {
   [[nodiscard]] const FitRow* data() const { return rows_.get(); }
   /// Numbers of the rows' samples.
   [[nodiscard]] std::span<const std::uint32_t> samples() const { return samples_; }
-  /// The root of the field's steepness there, one in the mean.
+  /// The root of the field's steepness there, if it is no spike's; one in the mean.
   [[nodiscard]] std::span<const float> weights() const { return weights_; }
   /// Of the near-field terms, with the sign of the outer side.
   [[nodiscard]] const Terms& steps() const { return steps_; }
   [[nodiscard]] const Terms& mean_openness() const { return mean_openness_; }
 
  private:
-  /// The terms' openness and the weights of many rows.
-  using Sums = std::array<double, kNearFieldSteps.size() + 1>;
   void measure(const NearField& near_field, const SampleSet& samples, const TexelCells& cells, const FitTexels& texels,
                NearFieldUse use, const Run& run);
-  void centre(const Sums& sums, const Run& run);
+  /// From the terms' openness, of all rows together, to its mean, and from steepness to weights.
+  void centre(const Terms& openness, const Run& run);
 
   std::vector<std::uint32_t> starts_;
   std::vector<std::uint32_t> samples_;

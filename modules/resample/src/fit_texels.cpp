@@ -8,6 +8,7 @@
 
 #include "cell_places.h"
 #include "near_field.h"
+#include "texel_breadths.h"
 
 namespace isolux {
 namespace {
@@ -56,8 +57,7 @@ void FitTexels::measure(const Volume& volume, const Run& run) {
   const double range = double(values.high) - double(values.low);
   if (range > 0.0) scale_ = std::exp2(-std::floor(std::log2(range)));
   const double least = range > 0.0 ? 1e-4 * range * scale_ : 1.0;
-  const Index3 points = volume.lattice().size;
-  const Vec3 reach = glm::abs(to_volume.axes[0]) + glm::abs(to_volume.axes[1]) + glm::abs(to_volume.axes[2]);
+  const TexelBreadths breadths(volume, texels_);
   const auto nx = std::size_t(texels_.size.x);
   const auto ny = std::size_t(texels_.size.y);
   isovalues_.resize(size());
@@ -73,20 +73,7 @@ void FitTexels::measure(const Volume& volume, const Run& run) {
       isovalues_[n] = float(near_field.field().value(centre) * scale_);
       const Vec3 normal = terms_.normals ? near_field.ahead(centre).downhill : Vec3(0.0);
       for (int a = 0; terms_.normals && a < 3; ++a) normals_[std::size_t(a)][n] = float(normal[a]);
-      if (!terms_.slopes) continue;
-      // The voxels of the cells that the texel's linear tent touches.
-      const Index3 low = glm::max(Index3(glm::floor(centre - reach + 1e-6)), Index3(0));
-      const Index3 high = glm::min(Index3(glm::ceil(centre + reach - 1e-6)), points - 1);
-      float smallest = volume.values(low.x, low.y, low.z);
-      float largest = smallest;
-      for (int z = low.z; z <= high.z; ++z)
-        for (int y = low.y; y <= high.y; ++y) {
-          const auto [a, b] = std::minmax_element(&volume.values(low.x, y, z), &volume.values(high.x, y, z) + 1);
-          smallest = std::min(smallest, *a);
-          largest = std::max(largest, *b);
-        }
-      const double breadth = 0.5 * (double(largest) - double(smallest)) * scale_;
-      inverse_breadths_[n] = float(1.0 / std::max(breadth, least));
+      if (terms_.slopes) inverse_breadths_[n] = float(1.0 / std::max(breadths.at(centre) * scale_, least));
     }
   });
 }

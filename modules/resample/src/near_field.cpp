@@ -1,9 +1,12 @@
 #include "near_field.h"
 
+#include <isolux/core/quantile.h>
+
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
+#include <limits>
 
 namespace isolux {
 
@@ -42,6 +45,11 @@ double NearField::outwards(const Sites& sites) const {
                       Vec3(sites.normals[s]));
   }
   return lower < 0.0 ? -1.0 : 1.0;
+}
+
+float most_weight(std::span<const float> weights) {
+  const float usual = quantile(weights, 0.9);
+  return usual > 0.0f ? 4.0f * usual : std::numeric_limits<float>::max();
 }
 
 }  // namespace isolux

@@ -2,6 +2,7 @@
 #include <isolux/core/error.h>
 #include <isolux/core/field.h>
 #include <isolux/core/parallel.h>
+#include <isolux/core/quantile.h>
 #include <isolux/resample/texel_means.h>
 
 #include <algorithm>
@@ -13,14 +14,20 @@
 #include <vector>
 
 #include "cell_places.h"
+#include "texel_breadths.h"
 
 namespace isolux {
 namespace {
 
 using Corners = std::array<std::size_t, 8>;
 
-/// Isovalues that lie closer together than this part of the volume's range say nothing of a slope.
+/// Isovalues that lie closer together than this part of the span of nine sites in ten say nothing of a slope: rounding
+/// would be seen through it. Not of the volume's range, which a single voxel can make any number of times as large.
 constexpr float kLeastSpread = 1e-4f;
+/// The same of how much f changes where the texel is read: a line is not drawn so far beyond its sites.
+constexpr float kLeastOfBreadth = 0.01f;
+/// Of the volume's range: squares of less are beyond floats.
+constexpr float kLeastOfRange = 1e-15f;
 constexpr float kSlopePrior = 0.25f;  // samples that say that light does not change with the isovalue
 
 }  // namespace
@@ -54,7 +61,7 @@ struct TexelMeans::Impl {
                    .site = site};
       }
     });
-    measure(volume, run);
+    measure(volume, sites, run);
   }
 
   /// A power of two times which the volume's values span some 1 to 2: squares of isovalues are taken.
@@ -88,7 +95,7 @@ struct TexelMeans::Impl {
     }
   }
 
-  void measure(const Volume& volume, const Run& run);
+  void measure(const Volume& volume, const Sites& sites, const Run& run);
   template <int channels>
   void add_up(std::span<const float> radiance, std::vector<float>& sums, const Run& run) const;
   void lines(std::span<const float> sums, ResampledGrid& result, const Run& run) const;
@@ -101,7 +108,7 @@ struct TexelMeans::Impl {
   std::vector<Spread> spreads;  ///< of every texel
 };
 
-void TexelMeans::Impl::measure(const Volume& volume, const Run& run) {
+void TexelMeans::Impl::measure(const Volume& volume, const Sites& sites, const Run& run) {
   spreads.resize(texels.count());
   std::vector<double> moments(texels.count(), 0.0);
   for_each_cell(run, [&](const Corners& corners, std::span<const Row> here) {
@@ -137,8 +144,8 @@ void TexelMeans::Impl::measure(const Volume& volume, const Run& run) {
   });
   const TrilinearField field(volume);
   const IndexToWorld to_volume = index_to_index(texels, volume.lattice());
-  const ValueRange range = value_range(volume);
-  const float least = kLeastSpread * (unit * range.high - unit * range.low);
+  const float usual = unit * quantile(sites.isovalues, 0.95) - unit * quantile(sites.isovalues, 0.05);
+  const TexelBreadths breadths(volume, texels);
   const auto nx = std::size_t(texels.size.x);
   const auto ny = std::size_t(texels.size.y);
   parallel_blocks(spreads.size(), 4096, run, "", [&](const Block& block) {
@@ -151,6 +158,8 @@ void TexelMeans::Impl::measure(const Volume& volume, const Run& run) {
       spread.own = unit * float(field.value(centre)) - spread.isovalue;
       // The prior's samples lie as far apart as the others, or as far off as the texel: few samples that lie close
       // together do not say what light is there.
+      const float least =
+          std::max({kLeastSpread * usual, kLeastOfBreadth * unit * float(breadths.at(centre)), kLeastOfRange});
       const float prior = kSlopePrior * (spread.per_slope / spread.weight + spread.own * spread.own);
       spread.per_slope = 1.0f / (spread.per_slope + prior + least * least);
     }

@@ -11,6 +11,7 @@
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
+#include <numeric>
 #include <optional>
 #include <vector>
 
@@ -27,11 +28,34 @@ struct Measured {
   float weight = 0.0f;
 };
 
+float weight_of(const NearField::Ahead& ahead) { return float(std::sqrt(ahead.fall)); }
+
+/// most_weight() of the lit texels; of many, of those of rows spread evenly over them.
+float most_weight_of(const NearField& near_field, const ResampledGrid& texels) {
+  constexpr std::size_t kTexelsEnough = 65536;
+  const Index3& size = texels.grid.lattice.size;
+  const auto nx = std::size_t(size.x);
+  std::size_t step = std::max<std::size_t>(1, texels.lit.size() / kTexelsEnough);
+  while (std::gcd(step, std::size_t(size.y)) > 1) ++step;  // rows of all j
+  TexelRow row(near_field, texels.grid.lattice);
+  std::vector<int> columns;
+  std::vector<float> weights;
+  for (std::size_t r = 0; r < texels.lit.size() / nx; r += step) {
+    columns.clear();
+    for (int i = 0; i < size.x; ++i)
+      if (texels.lit[r * nx + std::size_t(i)] != 0) columns.push_back(i);
+    row.look(int(r % std::size_t(size.y)), int(r / std::size_t(size.y)), columns);
+    for (std::size_t n = 0; n < columns.size(); ++n) weights.push_back(weight_of(row.ahead(n)));
+  }
+  return most_weight(weights);
+}
+
 /// Layers of texels, measured when they are wanted and let go after the next two.
 class MeasuredLayers {
  public:
-  MeasuredLayers(const NearField& near_field, double outwards, const ResampledGrid& texels)
+  MeasuredLayers(const NearField& near_field, double outwards, float most_weight, const ResampledGrid& texels)
       : outwards_(outwards),
+        most_weight_(most_weight),
         texels_(texels),
         layer_(std::size_t(texels.grid.lattice.size.x) * std::size_t(texels.grid.lattice.size.y)),
         row_(near_field, texels.grid.lattice) {}
@@ -61,7 +85,7 @@ class MeasuredLayers {
         if (lit[i] != 0) columns_.push_back(i);
       row_.look(j, k, columns_);
       for (std::size_t n = 0; n < columns_.size(); ++n)
-        kept.measured[row + std::size_t(columns_[n])].weight = float(std::sqrt(row_.ahead(n).fall));
+        kept.measured[row + std::size_t(columns_[n])].weight = std::min(weight_of(row_.ahead(n)), most_weight_);
       for (int s = 0; s < 3; ++s) {
         row_.find_openness(outwards_ * kOwnSteps[std::size_t(s)]);
         for (std::size_t n = 0; n < columns_.size(); ++n)
@@ -71,6 +95,7 @@ class MeasuredLayers {
   }
 
   double outwards_;
+  float most_weight_;
   const ResampledGrid& texels_;
   std::size_t layer_;
   TexelRow row_;
@@ -150,9 +175,10 @@ std::size_t layers_a_block(std::size_t layers, const Run& run) {
 }
 
 Moments moments(const NearField& near_field, double outwards, const ResampledGrid& texels, const Run& run) {
+  const float most = most_weight_of(near_field, texels);
   std::vector<Moments> by_layer(std::size_t(texels.grid.lattice.size.z));
   parallel_blocks(by_layer.size(), layers_a_block(by_layer.size(), run), run, "", [&](const Block& block) {
-    MeasuredLayers layers(near_field, outwards, texels);
+    MeasuredLayers layers(near_field, outwards, most, texels);
     for (std::size_t k = block.begin; k < block.end; ++k) by_layer[k] = moments_of_layer(texels.grid, layers, int(k));
   });
   Moments all;

@@ -11,6 +11,7 @@
 #include <isolux/core/light_bricks.h>
 #include <isolux/core/options.h>
 #include <isolux/core/parallel.h>
+#include <isolux/core/quantile.h>
 #include <isolux/core/random.h>
 #include <isolux/core/registry.h>
 #include <isolux/core/release.h>
