@@ -49,7 +49,7 @@ double NearField::outwards(const Sites& sites) const {
 
 float most_weight(std::span<const float> weights) {
   const float usual = quantile(weights, 0.9);
-  return usual > 0.0f ? 4.0f * usual : std::numeric_limits<float>::max();
+  return usual > 0.0f ? 2.0f * usual : std::numeric_limits<float>::max();
 }
 
 }  // namespace isolux

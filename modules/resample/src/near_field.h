@@ -40,7 +40,7 @@ class NearField {
   double spacing_;  ///< geometric mean, world units
 };
 
-/// The most that a place may weigh where `weights` are roots of the field's steepness: four times what nine in ten do
+/// The most that a place may weigh where `weights` are roots of the field's steepness: twice what nine in ten do
 /// not exceed. A spike of the volume, thousands of times as steep as the rest, would otherwise be all that counts.
 [[nodiscard]] float most_weight(std::span<const float> weights);
 
