@@ -49,9 +49,9 @@ double error_away(float spike, const std::string& resampler, int bounces) {
   return std::sqrt(squares / count);
 }
 
-// A fit's slopes are held down where f changes by less than 1e-4 of the volume's range, as floats must hold what is read
-// of them: worth 5 percent. What openness is worth is off by the places about the spike, a hundredth of all: worth 10.
-// It was 1.9 times as wrong, with bounces and without.
+// A fit's slopes are held down where f changes by less than 1e-4 of the volume's range, as floats must hold what is
+// read of them: worth 5 percent. What openness is worth is off by the places about the spike, a hundredth of all:
+// worth 10. It was 1.9 times as wrong, with bounces and without.
 TEST(Spike, LeavesAFitAsRightAwayFromIt) {
   for (const int bounces : {0, kAllBounces}) {
     const double without = error_away(0.0f, "fit", bounces);

@@ -92,9 +92,8 @@ TEST(Spike, LeavesMeansTheirSlopes) {
     SCOPED_TRACE(spike);
     Volume volume = testing::ramp_volume({12, 12, 12});
     if (spike > 0.0f) volume.values(8, 8, 7) = spike;
-    const SampleSet samples = random_samples(volume, 64 * 1331, 1, [](const Vec3& p, int) {
-      return float(2.0 + 0.05 * (p.x + 0.25 * p.y - 0.5 * p.z));
-    });
+    const SampleSet samples = random_samples(
+        volume, 64 * 1331, 1, [](const Vec3& p, int) { return float(2.0 + 0.05 * (p.x + 0.25 * p.y - 0.5 * p.z)); });
     const ResampledGrid means =
         TexelMeans(volume, samples.sites, cell_lattice(volume.lattice()), {}).of(samples.radiance, 1, {});
     for (int t = 0; t < 1331; ++t) {
