@@ -42,8 +42,8 @@ Volume labelled_volume() {
 }
 
 /// rms error at points of the level sets.
-double true_error(const Volume& volume, const Scene& scene, const BakeSettings& settings, const Sites& sites,
-                  const IlluminationGrid& light) {
+double error_on_level_sets(const Volume& volume, const Scene& scene, const BakeSettings& settings, const Sites& sites,
+                           const IlluminationGrid& light) {
   const TraceSettings paths{.rays = 256, .bounces = settings.trace.bounces};
   const SampleSet one = tracers().create("wide")->trace(volume, scene, sites, paths, {.seed = 901}).samples;
   const SampleSet other = tracers().create("wide")->trace(volume, scene, sites, paths, {.seed = 902}).samples;
@@ -73,7 +73,7 @@ TEST(LevelSetError, IsThatOfLightOnLabelsSurfaces) {
       for (const std::uint64_t seed : {1u, 2u, 3u, 4u, 5u}) {
         SCOPED_TRACE(seed);
         const BakeResult result = bake(volume, scene, settings, builtin_stages(), {.seed = seed});
-        const double error = true_error(volume, scene, settings, sites, result.light);
+        const double error = error_on_level_sets(volume, scene, settings, sites, result.light);
         EXPECT_GT(result.rmse_estimate, error / 1.3) << range.low << ", bounces " << bounces;
         EXPECT_LT(result.rmse_estimate, 1.9 * error) << range.low << ", bounces " << bounces;
       }

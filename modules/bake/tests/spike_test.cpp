@@ -14,12 +14,12 @@
 namespace isolux::test {
 namespace {
 
-constexpr int kSize = 16;
-constexpr int kSpike = 8;  // of each axis
+constexpr int kSpikedSize = 16;
+constexpr int kSpikeAt = 8;  // of each axis
 
 Volume spiked_gyroid(float spike) {
-  Volume volume = read_volume("gen:gyroid:" + std::to_string(kSize));
-  if (spike > 0.0f) volume.values(kSpike, kSpike, kSpike) = spike;
+  Volume volume = read_volume("gen:gyroid:" + std::to_string(kSpikedSize));
+  if (spike > 0.0f) volume.values(kSpikeAt, kSpikeAt, kSpikeAt) = spike;
   return volume;
 }
 
@@ -40,8 +40,8 @@ double error_away(float spike, const std::string& resampler, int bounces) {
   int count = 0;
   for (std::size_t t = 0; t < truth.values.size(); ++t) {
     const Index3 cell = index_of(truth.lattice.size, t);
-    const int off = std::max({std::abs(2 * cell.x + 1 - 2 * kSpike), std::abs(2 * cell.y + 1 - 2 * kSpike),
-                              std::abs(2 * cell.z + 1 - 2 * kSpike)});
+    const int off = std::max({std::abs(2 * cell.x + 1 - 2 * kSpikeAt), std::abs(2 * cell.y + 1 - 2 * kSpikeAt),
+                              std::abs(2 * cell.z + 1 - 2 * kSpikeAt)});
     if (off <= 4) continue;
     squares += std::pow(double(reader.at_index(Vec3(cell) + 0.5).x) - double(truth.values[t]), 2.0);
     ++count;
