@@ -2,6 +2,7 @@
 #include <isolux/bake/choose_texels.h>
 #include <isolux/core/error.h>
 #include <isolux/core/field.h>
+#include <isolux/core/quantile.h>
 #include <isolux/resample/openness.h>
 
 #include <algorithm>
@@ -27,11 +28,26 @@ constexpr int kPointRays = 256;
 constexpr double kOwnEnough = 0.75;
 constexpr int kTexelRays = 64;  // whatever the bake will spend: exact texels are asked about
 
+/// Of the slopes there are, what nine in ten do not exceed; so many times that and no more counts. A spike of the
+/// volume, thousands of times as steep as the rest, would otherwise be all that counts.
+constexpr double kUsualPart = 0.9;
+constexpr double kMostOfUsual = 4.0;
+
 /// Random points of random level sets, the light there, and how much area of how many level sets each stands for.
 struct Reference {
   SampleSet samples;
   std::vector<double> weights;
 };
+
+/// Caps what points weigh that a spike made steep.
+void cap(std::vector<double>& weights) {
+  const double steepest = *std::max_element(weights.begin(), weights.end());
+  std::vector<float> steep;  // as parts of it, which floats hold
+  for (const double weight : weights)
+    if (weight > 0.0) steep.push_back(float(weight / steepest));
+  const double most = kMostOfUsual * steepest * double(quantile(steep, kUsualPart));
+  for (double& weight : weights) weight = std::min(weight, most);
+}
 
 Reference trace_reference(const Volume& volume, const Scene& scene, const BakeSettings& settings,
                           const FlatTracer& tracer, const Stages& stages, const Run& run, TraceCounters& counters) {
@@ -51,6 +67,7 @@ Reference trace_reference(const Volume& volume, const Scene& scene, const BakeSe
     const Vec3 gradient = field.world_gradient(Vec3(position), GradientKind::kCentralDifferences);
     reference.weights.push_back(settings.isovalues ? 1.0 : glm::length(gradient));
   }
+  cap(reference.weights);
   TraceSettings rays = settings.trace;
   rays.rays = kPointRays;
   TraceResult traced = tracer.trace(volume, scene, std::move(sites), rays, run);
