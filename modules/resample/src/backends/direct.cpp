@@ -54,15 +54,12 @@ class Direct final : public Resampler {
     require_texels(texels);
     if (!options_.denoise) return told_by_bytes(placed(volume, samples, samples.radiance, texels, run));
     const DenoisedLight light = denoised_light(volume, samples, texels, run);
-    const std::vector<float>& before = light.lamps.empty() ? samples.radiance : light.noisy_rest;
     IlluminationGrid result = placed(volume, samples, light.rest, texels, run);
-    if (options_.sharpen) sharpen(result, placed(volume, samples, before, texels, run), run);
-    keep_to_brightest(before, result);
-    if (!light.lamps.empty()) {
-      IlluminationGrid lamps = placed(volume, samples, light.lamps, texels, run);
-      keep_to_brightest(samples.lamps, lamps);
-      add(lamps, result);
+    if (options_.sharpen) {
+      const std::vector<float>& before = light.lamps.empty() ? samples.radiance : light.noisy_rest;
+      sharpen(result, placed(volume, samples, before, texels, run), run);
     }
+    if (!light.lamps.empty()) add(placed(volume, samples, light.lamps, texels, run), result);
     return told_by_bytes(std::move(result));
   }
 
@@ -91,8 +88,8 @@ class Direct final : public Resampler {
 
   void add_detail(const Volume& volume, const SampleSet& samples, ResampledGrid& texels,
                   const Run& run) const override {
-    if (!options_.near_field) return;
-    estimate_near_field(volume, NearField(volume).outwards(samples.sites), texels, run);
+    if (options_.near_field) estimate_near_field(volume, NearField(volume).outwards(samples.sites), texels, run);
+    if (options_.denoise) keep_to_brightest(samples, texels.grid);
   }
 
  private:
@@ -104,12 +101,17 @@ class Direct final : public Resampler {
     return grid;
   }
 
-  /// What is fitted or sharpened may overshoot: no texel is brighter than the brightest of the samples, by channel.
-  static void keep_to_brightest(const std::vector<float>& samples, IlluminationGrid& light) {
+  /// What is fitted or sharpened may overshoot, and nothing is read that is brighter than the brightest sample. Where
+  /// reading has a bound, texels may: they are sharpened so that what is read between them is right.
+  static void keep_to_brightest(const SampleSet& samples, IlluminationGrid& light) {
     const auto channels = std::size_t(light.channels);
     std::array<float, 3> brightest{};
-    for (std::size_t v = 0; v < samples.size(); ++v)
-      brightest[v % channels] = std::max(brightest[v % channels], samples[v]);
+    for (std::size_t v = 0; v < samples.radiance.size(); ++v)
+      brightest[v % channels] = std::max(brightest[v % channels], samples.radiance[v]);
+    if (!light.detail.empty()) {
+      light.detail.ceiling = std::min(light.detail.ceiling, *std::max_element(brightest.begin(), brightest.end()));
+      return;
+    }
     for (std::size_t v = 0; v < light.values.size(); ++v)  // NaN, of texels without light, stays
       light.values[v] = std::min(light.values[v], brightest[v % channels]);
   }
