@@ -210,7 +210,7 @@ void add_bake_command(CLI::App& program, Session& session) {
       .add_option(
           "--texels-a-cell", options->texels_a_cell,
           "texels a cell on each axis, 1.5 too (default 1; with --resampler fit .73, .97 for one isovalue, .8 for a "
-          "range): with the fit 1.17 is better light, 1.58 the best, for two and a half times the rays")
+          "range): with the fit 1.17 is better light, 1.58 the best, for two and a half times the rays of 1.17")
       ->check(number_within(0.125, 8.0))
       ->excludes(texels)
       ->type_name("N");

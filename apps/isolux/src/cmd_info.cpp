@@ -72,6 +72,13 @@ nlohmann::json to_json(const StoredVolume& volume, const Statistics& s) {
   return json;
 }
 
+/// Digits that tell a thousandth of the range from the next: six, more where the range is little beside the values.
+int digits_for(const Statistics& s) {
+  const double most = std::max(std::fabs(double(s.low)), std::fabs(double(s.high)));
+  const double span = double(s.high) - double(s.low);
+  return span > 0.0 ? std::clamp(6 - int(std::floor(std::log10(span / most))), 6, 17) : 6;
+}
+
 void print(const StoredVolume& volume, const Statistics& s) {
   const Lattice& lattice = volume.lattice();
   const Vec3 spacing = lattice.frame.spacing();
@@ -83,8 +90,9 @@ void print(const StoredVolume& volume, const Statistics& s) {
   fmt::print("origin   {:g}, {:g}, {:g} in {}\n", o.x, o.y, o.z, volume.space);
   if (s.not_finite > 0) fmt::print("voxels that are infinite or not a number: {}\n", s.not_finite);
   if (s.moments.count == 0) return;
-  fmt::print("range    {:g} to {:g}, mean {:g}, standard deviation {:g}\n", s.low, s.high, s.moments.mean,
-             s.moments.standard_deviation);
+  const int digits = digits_for(s);
+  fmt::print("range    {:.{}g} to {:.{}g}, mean {:.{}g}, standard deviation {:g}\n", s.low, digits, s.high, digits,
+             s.moments.mean, digits, s.moments.standard_deviation);
   fmt::print("{} bins: where each begins, its voxels, and a bar of their logarithm\n", kBins);
   const std::size_t most = *std::max_element(s.histogram.begin(), s.histogram.end());
   const double step = (double(s.high) - double(s.low)) / double(kBins);
@@ -92,7 +100,7 @@ void print(const StoredVolume& volume, const Statistics& s) {
     // Linear bars of the background would hide everything else.
     const double bar =
         s.histogram[b] > 0 ? 1.0 + 49.0 * std::log(double(s.histogram[b])) / std::log(double(most) + 1.0) : 0.0;
-    fmt::print("  {:>12.5g} {:>10}  {}\n", double(s.low) + step * double(b), s.histogram[b],
+    fmt::print("  {:>12.{}g} {:>10}  {}\n", double(s.low) + step * double(b), digits - 1, s.histogram[b],
                std::string(std::size_t(bar), '#'));
   }
 }
