@@ -217,10 +217,10 @@ void add_bake_command(CLI::App& program, Session& session) {
   command.add_option("--lattice", options->lattice, "texels at the cell centres (default) or at the voxels")
       ->check(CLI::IsMember({"cells", "voxels"}));
   command
-      .add_option("--bounce-method", options->bounce_method,
-                  "iterated: trace once, keep the hits and iterate on the grid (default for "
-                  "sites at texels and --resampler fit, unless --tracer, --set tracer... or scattered --sites need is "
-                  "given); paths: unbiased")
+      .add_option(
+          "--bounce-method", options->bounce_method,
+          "iterated: trace once, keep the hits and iterate on the grid (default of resamplers direct and fit, unless "
+          "--tracer, --set tracer... or scattered --sites need is given); paths: unbiased")
       ->check(CLI::IsMember({"iterated", "paths"}));
   command
       .add_option("--rmse", options->rmse,
