@@ -119,12 +119,13 @@ void foresee_memory(const BakeOptions& options, const Volume& volume, const Scen
   const double left = free_memory();
   if (bytes < left) return;
   std::string less = "fewer texels (--texels-a-cell)";
+  if (settings.lattice == TexelLattice::kVoxels) less = "--lattice cells and fewer texels (--texels-a-cell)";
   if (options.samples > 0)
     less = "fewer --samples";
   else if (settings.resampler.name == "fit")
     less = "--resampler direct";
   if (iterates(settings) && settings.trace.bounces != 0) less += ", --bounce-method paths";
-  if (!settings.isovalues) less += " or an --iso-range";
+  if (!settings.isovalues && options.samples == 0) less += " or an --iso-range";
   session.warn(
       fmt::format("this takes about {:.1f} GB of memory beside the volume, and {:.1f} GB are free: {} take less",
                   bytes * 1e-9, left * 1e-9, less));

@@ -54,6 +54,20 @@ double sites_of(const Volume& volume, const Lattice& texels, const BakeSettings&
   return double(texels.count()) * std::min(1.0, settings.isovalues ? kReadByACell * part : part);
 }
 
+/// Of a fit: the system and its solution, by the numbers of a texel; what reflections are read from; and the samples.
+double bytes_of_fit(const BakeSettings& settings, const Lattice& volume, double texels, double sites, double channels) {
+  const auto has = [&](const char* what) {
+    const auto it = settings.resampler.settings.find(what);
+    return it == settings.resampler.settings.end() || it->second != "false";
+  };
+  const bool one_isovalue = settings.isovalues && settings.isovalues->low == settings.isovalues->high;
+  const double numbers = 1.0 + (has("slopes") && !one_isovalue ? 1.0 : 0.0) + (has("normals") ? 3.0 : 0.0);
+  double bytes = (8.0 + 10.0 * numbers * channels) * texels + (100.0 + 5.0 * channels) * sites;
+  if (reads_means(settings) && iterates(settings))
+    bytes += (10.0 + 10.0 * channels) * std::max(texels, double(volume.count()));
+  return bytes;
+}
+
 /// Of links, whether they keep where rays end or only that they do.
 double bytes_of_links(const BakeSettings& settings, double sites) {
   const double rays = has_target(settings) ? kRaysToATarget : double(settings.trace.rays);
@@ -96,7 +110,7 @@ double memory_foreseen(const Volume& volume, const Scene& scene, const BakeSetti
   if (denoises)
     resampling += bytes_of_windows(texels, sites, channels, lamps > 0.0);
   else if (settings.resampler.name == "fit")
-    resampling = light + (105.0 + 5.0 * channels) * sites;
+    resampling = bytes_of_fit(settings, volume.lattice(), double(texels.count()), sites, channels);
   else if (!resampler->takes_parts())
     resampling += 38.0 * sites;
   double tracing = sample * sites;

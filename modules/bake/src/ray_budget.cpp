@@ -14,7 +14,6 @@ constexpr int kLevelsAFactor = 8;
 /// A doubling divides the variance by 2^1.5 and doubles the rays.
 constexpr int kLevelsADoubling = 20;
 constexpr std::uint32_t kMostRays = 1u << 20;
-constexpr float kUnknown = std::numeric_limits<float>::max();
 
 /// Sites of one level together.
 struct Level {
@@ -24,7 +23,7 @@ struct Level {
 using Levels = std::array<Level, kLevels>;
 
 double smoothed(std::span<const float> variances, std::size_t site) {
-  const auto at = [&](std::size_t i) { return variances[i] < kUnknown ? double(variances[i]) : 0.0; };
+  const auto at = [&](std::size_t i) { return variances[i] < kUnknownVariance ? double(variances[i]) : 0.0; };
   const double before = site > 0 ? at(site - 1) : at(site);
   const double after = site + 1 < variances.size() ? at(site + 1) : at(site);
   return 0.25 * (before + after) + 0.5 * at(site);
@@ -32,7 +31,7 @@ double smoothed(std::span<const float> variances, std::size_t site) {
 
 /// -1 for sites that need no rays: without a normal, or as many as there can be.
 int level_of(double variance, std::uint32_t rays, float own) {
-  if (own >= kUnknown || rays >= kMostRays || !(variance > 0.0)) return -1;
+  if (own >= kUnknownVariance || rays >= kMostRays || !(variance > 0.0)) return -1;
   const double level = std::log2(variance / double(rays)) * kLevelsAFactor + kLevels;
   return std::clamp(int(level), 0, kLevels - 1);
 }
@@ -63,7 +62,7 @@ std::vector<std::uint32_t> sites_to_double(std::span<const float> variances, std
   for (std::size_t i = 0; i < variances.size(); ++i) {
     const double variance = smoothed(variances, i);
     level[i] = std::int16_t(level_of(variance, rays[i], variances[i]));
-    known += std::size_t(variances[i] < kUnknown);
+    known += std::size_t(variances[i] < kUnknownVariance);
     if (level[i] < 0) continue;
     levels[std::size_t(level[i])].variance += variance;
     levels[std::size_t(level[i])].rays += double(rays[i]);

@@ -72,7 +72,6 @@ TEST(ScatteredLinks, WhiteSurfacesAreWhite) {
   EXPECT_NEAR(mean(result.light.values), 1.0, 0.003);
 }
 
-// docs/theory.md, "Exact answers", 7. Light changes with the isovalue alone and twofold from .55 to .65.
 // Texels between a ball of 1000 and noise below 1 are read along level sets far from those of their samples: lines over
 // the isovalue led to four times the light that there is.
 TEST(ScatteredLinks, ReflectNoMoreLightThanThereIs) {
@@ -92,6 +91,7 @@ TEST(ScatteredLinks, ReflectNoMoreLightThanThereIs) {
   }
 }
 
+// docs/theory.md, "Exact answers", 7. Light changes with the isovalue alone and twofold from .55 to .65.
 TEST(ScatteredLinks, MatchTheOpenIntegratingSphere) {
   const Volume volume = read_volume("gen:cavity:33");
   const BakeResult result = lit(volume, grey(0.8f, 0.0f, 1.0f), fitted(16, kAllBounces));

@@ -130,8 +130,10 @@ bool LightLinks::Solver::is_nearly_white() const {
 }
 
 std::vector<float> LightLinks::Solver::most_light() {
+  const std::vector<float> one(reads_sites() ? straight_.size() : links_.rounds_->targets->texels().count() * channels_,
+                               1.0f);
   std::vector<float> of_one;
-  reflect(at_targets(std::vector<float>(straight_.size(), 1.0f)), of_one);
+  reflect({.values = one, .channels = channels_}, of_one);
   std::vector<float> most(channels_, 0.0f);
   for (std::size_t i = 0; i < straight_.size(); ++i) {
     if (!(straight_[i] > 0.0f)) continue;  // a closed pocket without light bounds nothing

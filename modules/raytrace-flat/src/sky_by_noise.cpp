@@ -21,8 +21,6 @@ std::map<std::uint32_t, std::vector<std::uint32_t>> by_rays(const Sites& sites, 
   return result;
 }
 
-constexpr float kUnknownVariance = std::numeric_limits<float>::max();
-
 /// Makes what there is of some sites so large a share.
 void scale(std::span<const std::uint32_t> sites, double share, SampleSet& samples) {
   const auto channels = std::size_t(samples.channels);

@@ -4,14 +4,12 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <map>
 #include <utility>
 #include <vector>
 
 namespace isolux::wide {
 namespace {
 
-constexpr float kNotKnown = std::numeric_limits<float>::max();
 /// Probes of one number of rays that are enough for a scale of their own.
 constexpr std::size_t kEnoughProbes = 64;
 /// Where nothing is known: half the sky's, twice that of lamps aimed at.
@@ -51,6 +49,28 @@ class Tally {
   std::size_t count_ = 0;
 };
 
+/// What is kept of each number of rays. There are few: doublings of the first.
+template <class Value>
+class ByRays {
+ public:
+  [[nodiscard]] Value& operator[](std::uint32_t rays) {
+    for (auto& [count, value] : all_)
+      if (count == rays) return value;
+    return all_.emplace_back(rays, Value{}).second;
+  }
+  /// Null if nothing is kept.
+  [[nodiscard]] const Value* find(std::uint32_t rays) const {
+    for (const auto& [count, value] : all_)
+      if (count == rays) return &value;
+    return nullptr;
+  }
+  [[nodiscard]] auto begin() const { return all_.begin(); }
+  [[nodiscard]] auto end() const { return all_.end(); }
+
+ private:
+  std::vector<std::pair<std::uint32_t, Value>> all_;
+};
+
 /// The squared difference of a probe's two results, half: the variance of either.
 double found_by(const SampleSet& samples, std::size_t probe, const SampleSet& again, std::size_t k) {
   const auto channels = std::size_t(samples.channels);
@@ -64,22 +84,19 @@ double found_by(const SampleSet& samples, std::size_t probe, const SampleSet& ag
 
 bool are_known(const SampleSet& samples, std::span<const std::size_t> probes) {
   return std::none_of(probes.begin(), probes.end(),
-                      [&](std::size_t probe) { return samples.variance[probe] == kNotKnown; });
+                      [&](std::size_t probe) { return samples.variance[probe] == kUnknownVariance; });
 }
 
 /// Of all sites: what their variances say.
 Tally tally_of_all(const SampleSet& samples) {
   Tally all;
   for (const float variance : samples.variance)
-    if (variance != kNotKnown) all.add(double(variance), 0.0);
+    if (variance != kUnknownVariance) all.add(double(variance), 0.0);
   return all;
 }
 
-/// By numbers of rays.
-using Scales = std::map<std::uint32_t, double>;
-
-Scales scales_of(const std::map<std::uint32_t, Tally>& by_rays, double scale) {
-  Scales scales;
+ByRays<double> scales_of(const ByRays<Tally>& by_rays, double scale) {
+  ByRays<double> scales;
   for (const auto& [count, tally] : by_rays)
     if (tally.count() >= kEnoughProbes) scales[count] = tally.scale(scale);
   return scales;
@@ -101,13 +118,13 @@ class LowVariance {
   /// Whether so many probes tell.
   [[nodiscard]] bool is_known() const { return all_.count() >= kEnoughLow; }
   [[nodiscard]] double of(std::uint32_t rays) const {
-    const auto own = by_rays_.find(rays);
-    if (own != by_rays_.end() && own->second.count() >= kEnoughLow) return own->second.mean_found();
+    const Tally* const own = by_rays_.find(rays);
+    if (own != nullptr && own->count() >= kEnoughLow) return own->mean_found();
     return all_.mean_found() * std::pow(double(rays), -1.5);
   }
 
  private:
-  std::map<std::uint32_t, Tally> by_rays_;
+  ByRays<Tally> by_rays_;
   Tally all_;
 };
 
@@ -116,9 +133,9 @@ class LowVariance {
 class Luck {
  public:
   Luck(const SampleSet& samples, std::span<const std::uint32_t> rays) {
-    std::map<std::uint32_t, Tally> by_rays;
+    ByRays<Tally> by_rays;
     for (std::size_t site = 0; site < rays.size(); ++site)
-      if (samples.variance[site] != kNotKnown) by_rays[rays[site]].add(double(samples.variance[site]), 0.0);
+      if (samples.variance[site] != kUnknownVariance) by_rays[rays[site]].add(double(samples.variance[site]), 0.0);
     levels_.resize(rays.size());
     for (std::size_t site = 0; site < rays.size(); ++site) {
       double limit = by_rays[rays[site]].mean_expected();
@@ -146,7 +163,7 @@ void calibrate_variance(SampleSet& samples, std::span<const std::size_t> probes,
                         std::span<const std::uint32_t> rays) {
   if (!are_known(samples, probes)) return;
   Tally all;
-  std::map<std::uint32_t, Tally> by_rays;
+  ByRays<Tally> by_rays;
   for (std::size_t k = 0; k < probes.size(); ++k) {
     const auto variance = double(samples.variance[probes[k]]);
     const double found = found_by(samples, probes[k], again, k);
@@ -154,11 +171,11 @@ void calibrate_variance(SampleSet& samples, std::span<const std::size_t> probes,
     if (!rays.empty()) by_rays[rays[probes[k]]].add(variance, found);
   }
   const double scale = scale_of_all(all, tally_of_all(samples));
-  const Scales scales = scales_of(by_rays, scale);
+  const ByRays<double> scales = scales_of(by_rays, scale);
   for (std::size_t site = 0; site < samples.variance.size(); ++site) {
-    if (samples.variance[site] == kNotKnown) continue;
-    const auto own = scales.empty() ? scales.end() : scales.find(rays[site]);
-    const auto by = float(own != scales.end() ? own->second : scale);
+    if (samples.variance[site] == kUnknownVariance) continue;
+    const double* const own = rays.empty() ? nullptr : scales.find(rays[site]);
+    const auto by = float(own != nullptr ? *own : scale);
     samples.variance[site] *= by;
     if (!samples.lamps_variance.empty()) samples.lamps_variance[site] *= by;
   }
@@ -169,7 +186,7 @@ void calibrate_variance_of_chosen(SampleSet& samples, std::span<const std::size_
   if (!are_known(samples, probes)) return;
   Luck luck(samples, rays);
   Tally all;
-  std::map<std::uint32_t, Tally> by_rays;
+  ByRays<Tally> by_rays;
   for (std::size_t k = 0; k < probes.size(); ++k) {
     const float variance = samples.variance[probes[k]];
     const std::uint32_t count = rays[probes[k]];
@@ -182,12 +199,12 @@ void calibrate_variance_of_chosen(SampleSet& samples, std::span<const std::size_
     }
   }
   const double scale = scale_of_all(all, tally_of_all(samples));
-  const Scales scales = scales_of(by_rays, scale);
+  const ByRays<double> scales = scales_of(by_rays, scale);
   for (std::size_t site = 0; site < samples.variance.size(); ++site) {
     float& variance = samples.variance[site];
-    if (variance == kNotKnown) continue;
-    const auto own = scales.find(rays[site]);
-    const auto by = float(own != scales.end() ? own->second : scale);
+    if (variance == kUnknownVariance) continue;
+    const double* const own = scales.find(rays[site]);
+    const auto by = float(own != nullptr ? *own : scale);
     if (!samples.lamps_variance.empty()) samples.lamps_variance[site] *= by;
     const LowVariance* const low = luck.of(site);
     variance = low != nullptr && low->is_known() ? float(low->of(rays[site])) : by * variance;

@@ -10,12 +10,6 @@
 #include "wide/calibrate_variance.h"
 
 namespace isolux::wide {
-namespace {
-
-constexpr float kUnknownVariance = std::numeric_limits<float>::max();
-
-}  // namespace
-
 NetMean::NetMean(const SobolPoints& points, std::size_t rays, std::size_t first, double share)
     : order_(rays), share_(share) {
   // Neighbours on the curve share the small squares of the net, and still do after a digital shift.

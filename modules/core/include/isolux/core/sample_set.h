@@ -5,6 +5,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <string_view>
 #include <vector>
@@ -42,12 +43,16 @@ enum class RaySpread : std::uint8_t {
   kByNoise  ///< as many on average, more of sites about which a first quarter of the rays is noisy
 };
 
+/// The variance of a sample whose rays say nothing of it: of one ray, or of a site without a normal.
+inline constexpr float kUnknownVariance = std::numeric_limits<float>::max();
+
 /// Sites and the light found at them: e = irradiance/pi of the outer side (a radiance), see docs/theory.md.
 struct SampleSet {
   Sites sites;
   int channels = 1;             ///< 1 (grey) or 3 (RGB)
   std::vector<float> radiance;  ///< e; `channels` values a site, channel fastest
-  std::vector<float> variance;  ///< squared standard error of e, mean over the channels; one a site
+  std::vector<float>
+      variance;  ///< squared standard error of e, mean over the channels; one a site, or kUnknownVariance
   /// What of `radiance` and of `variance` is lamps' (LampLight), in the same layout; empty where it is not told apart.
   std::vector<float> lamps{};
   std::vector<float> lamps_variance{};
