@@ -277,28 +277,5 @@ class Convert(CommandLineTest):
         self.assertEqual(struct.unpack("<8H", self.read("little_2x2x2_uint16.raw")), tuple(range(8)))
 
 
-class StoredTypes(CommandLineTest):
-    """A file of 8 or 16 bits is the same volume as one of floats with its values."""
-
-    def test_give_the_same_figures_surface_and_light(self):
-        values = [(7 * x * y + 11 * y * z + 5 * z * x) % 100 for z in range(6) for y in range(7) for x in range(8)]
-        self.write("f_8x7x6_float32.raw", struct.pack(f"<{len(values)}f", *values))
-        self.succeed("bake", "f_8x7x6_float32.raw", "-o", "light.nrrd", "--rays", 4, "--bounces", 0, "--quiet")
-        files = []
-        for name, code in (("float32", "f"), ("uint8", "B"), ("int8", "b"), ("uint16", "H"), ("int16", "h")):
-            file = self.write(f"f_8x7x6_{name}.raw", struct.pack(f"<{len(values)}{code}", *values))
-            info = json.loads(self.succeed("info", file, "--json").stdout)
-            self.assertEqual((info.pop("type"), info.pop("name")), (name, file))
-            # Under one name, which meshes hold.
-            os.replace(file, self.path("f.raw"))
-            volume = ("f.raw", "--dims", "8x7x6", "--type", name, "--iso", 40.5)
-            self.succeed("extract", *volume, "-o", "plain.ply", "--cap")
-            # The light is that of the floats: hashes agree, whatever the type.
-            self.succeed("extract", *volume, "-o", "lit.ply", "--light", "light.nrrd")
-            files.append((info, self.read("plain.ply"), self.read("lit.ply")))
-        for one in files[1:]:
-            self.assertEqual(one, files[0])
-
-
 if __name__ == "__main__":
     unittest.main()

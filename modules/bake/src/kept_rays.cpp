@@ -11,7 +11,6 @@
 #include <cstdint>
 #include <glm/common.hpp>
 #include <glm/vector_relational.hpp>
-#include <limits>
 #include <utility>
 #include <variant>
 
@@ -43,7 +42,7 @@ constexpr std::size_t kSamplesAPart = std::size_t(1) << 18;
 std::vector<std::uint32_t> all_that_are_lit(std::span<const float> variances) {
   std::vector<std::uint32_t> sites;
   for (std::size_t i = 0; i < variances.size(); ++i)
-    if (variances[i] < std::numeric_limits<float>::max()) sites.push_back(std::uint32_t(i));
+    if (variances[i] < kUnknownVariance) sites.push_back(std::uint32_t(i));
   return sites;
 }
 

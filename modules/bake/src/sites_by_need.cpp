@@ -68,7 +68,7 @@ class CellSpread {
     }
     for (std::size_t s = 0; s < samples.size(); ++s) {
       const std::size_t cell = number(cell_of(samples.sites.positions[s]));
-      if (counts[cell] < 2.0f || !(samples.variance[s] < std::numeric_limits<float>::max())) continue;
+      if (counts[cell] < 2.0f || !(samples.variance[s] < kUnknownVariance)) continue;
       const float free = 1.0f - 1.0f / counts[cell];
       degrees[cell] += free;
       squares[cell] -= free * samples.variance[s];

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <isolux/core/sample_set.h>
+
 #include <cmath>
 #include <cstddef>
 #include <limits>
@@ -12,7 +14,7 @@ class MeanVariance {
  public:
   void add(std::span<const float> variances) {
     for (const float v : variances) {
-      if (v >= std::numeric_limits<float>::max()) continue;
+      if (v >= kUnknownVariance) continue;
       sum_ += double(v);
       ++count_;
     }

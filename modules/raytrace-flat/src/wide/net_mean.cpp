@@ -3,7 +3,6 @@
 #include <isolux/core/random.h>
 
 #include <algorithm>
-#include <limits>
 #include <numeric>
 
 #include "morton.h"

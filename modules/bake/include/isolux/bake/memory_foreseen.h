@@ -8,7 +8,7 @@ namespace isolux {
 /// of its way takes. The sites are counted by looking at some cells, so it costs milliseconds. Right to a factor of
 /// 1.5 on volumes of 96^3 and more (docs/measured/memory.md); with BakeSettings::target_rmse or target_seconds, whose
 /// rays only the bake finds, and with TexelSites::kNeeded it is what smooth light takes, and rough light more. Compare
-/// it with free_memory(). \throw InvalidInput as bake()
+/// it with free_memory(). \pre the volume is usable (require_usable()) \throw InvalidInput as bake()
 [[nodiscard]] double memory_foreseen(const Volume& volume, const Scene& scene, const BakeSettings& settings,
                                      const Stages& stages);
 
