@@ -10,7 +10,6 @@
 #include <vector>
 
 #include "commands.h"
-#include "memory.h"
 #include "program.h"
 #include "session.h"
 #include "usage.h"
@@ -79,7 +78,6 @@ int work(int argc, char** argv, isolux::Session& session, std::string& what) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  isolux::return_large_arrays();
   return isolux::run_program(
       "command line", [&](isolux::Session& session, std::string& what) { return work(argc, argv, session, what); });
 }

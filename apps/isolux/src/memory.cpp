@@ -1,17 +1,36 @@
 #include "memory.h"
 
+#include <isolux/core/huge_pages.h>
+
 #include <cstdlib>
 
 #ifdef __GLIBC__
 #include <malloc.h>
 #endif
 
+// Sanitizers bring allocators of their own.
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+namespace {
+constexpr std::size_t kLarge = std::size_t(1) << 20;
+}  // namespace
+
+void* operator new(std::size_t bytes) {
+  void* const memory = std::malloc(bytes > 0 ? bytes : 1);  // NOLINT: what new stands on
+  if (memory == nullptr) throw std::bad_alloc();
+  if (bytes >= kLarge) isolux::ask_for_huge_pages(memory, bytes);
+  return memory;
+}
+void operator delete(void* memory) noexcept { std::free(memory); }                         // NOLINT: as above
+void operator delete(void* memory, std::size_t /*bytes*/) noexcept { std::free(memory); }  // NOLINT: as above
+#endif
+
 namespace isolux {
 
-void return_large_arrays() {
+void reuse_arrays() {
 #ifdef __GLIBC__
-  constexpr int kLarge = 256 * 1024;
-  mallopt(M_MMAP_THRESHOLD, kLarge);  // one that is set stays
+  constexpr int kKept = 32 << 20;
+  mallopt(M_MMAP_THRESHOLD, kKept);
+  mallopt(M_TRIM_THRESHOLD, kKept);
 #endif
 }
 

@@ -8,10 +8,11 @@
 
 namespace isolux {
 
-/// Has the C library give large arrays back to the system when they are freed (glibc; nothing elsewhere). By itself it
-/// does so only up to the size of the largest one freed so far, up to 32 MB, and keeps what is smaller: stages that
-/// each take and free tens of megabytes then hold much of it all together. Before anything is allocated.
-void return_large_arrays();
+/// Has the C library keep what is freed of arrays up to 32 MB for the next ones, and no more of it than that (glibc;
+/// nothing elsewhere): a bake takes the same arrays for every part of the isovalues, and would spend up to half of its
+/// time having them cleared anew. Larger ones go back to the system at once. In the first place of a program. Programs
+/// that have this also ask for huge pages for arrays from 1 MB on: memory.cpp replaces operator new.
+void reuse_arrays();
 
 /// Does `work`; where memory does not suffice, the error says for what it does not. \throw Error
 template <class Work>

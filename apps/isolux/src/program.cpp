@@ -11,6 +11,7 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "memory.h"
 #include "session.h"
 #include "signals.h"
 #include "terminal.h"
@@ -19,6 +20,7 @@
 namespace isolux {
 
 int run_program(std::string what, const std::function<int(Session& session, std::string& what)>& work) {
+  reuse_arrays();
   open_standard_streams();
   std::signal(SIGXFSZ, SIG_IGN);
   std::atomic_flag told{};  // one line says that the program was interrupted, whoever is first

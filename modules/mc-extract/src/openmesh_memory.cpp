@@ -1,5 +1,7 @@
 #include "openmesh_memory.h"
 
+#include <isolux/core/huge_pages.h>
+
 #include <algorithm>
 #include <cstdint>
 
@@ -16,31 +18,24 @@ static_assert(sizeof(IsoMesh::Edge) == 2 * sizeof(HalfEdgeRecord));
 static_assert(sizeof(IsoMesh::Vertex) == sizeof(std::int32_t) && sizeof(IsoMesh::Face) == sizeof(std::int32_t));
 static_assert(sizeof(IsoMesh::Point) == 3 * sizeof(float) && sizeof(IsoMesh::Normal) == 3 * sizeof(float));
 
-constexpr std::uintptr_t kHugePage = std::uintptr_t(2) << 20;
-
 std::uintptr_t round_up(std::uintptr_t address) { return (address + kHugePage - 1) / kHugePage * kHugePage; }
 
-/// Asks for huge pages for memory of which only a page at each end was touched, by the allocator.
-void ask_for_huge_pages(void* memory, std::size_t bytes) {
+/// Has memory of which only a page at each end was touched, by the allocator, lie in huge pages.
+void lay_in_huge_pages(void* memory, std::size_t bytes) {
+  if (bytes < kHugePage) return;
+  ask_for_huge_pages(memory, bytes);
 #ifdef __linux__
 #ifndef MADV_COLLAPSE
 #define MADV_COLLAPSE 25
 #endif
-  if (bytes < kHugePage) return;
-  const std::uintptr_t begin = reinterpret_cast<std::uintptr_t>(memory) / kHugePage * kHugePage;
-  const std::uintptr_t end = round_up(reinterpret_cast<std::uintptr_t>(memory) + bytes);
-  const auto advise = [](std::uintptr_t from, std::uintptr_t to, int advice) {
-    madvise(reinterpret_cast<void*>(from), to - from, advice);  // NOLINT: an address
-  };
-  // Advice only: where it is refused (an end that lies at nothing mapped, a kernel before 6.1) the memory is as good.
-  advise(begin, end, MADV_HUGEPAGE);
   // The page touched at each end keeps its whole huge page from being one, unless they are joined: some 4000 page
-  // faults a mesh, and a tenth of the time.
-  advise(begin, begin + kHugePage, MADV_COLLAPSE);
-  advise(end - kHugePage, end, MADV_COLLAPSE);
-#else
-  (void)memory;
-  (void)bytes;
+  // faults a mesh, and a tenth of the time. Refused by kernels before 6.1, and where an end lies at nothing mapped.
+  const auto join = [](std::uintptr_t page) {
+    madvise(reinterpret_cast<void*>(page), kHugePage, MADV_COLLAPSE);  // NOLINT: an address
+  };
+  const auto address = reinterpret_cast<std::uintptr_t>(memory);
+  join(address / kHugePage * kHugePage);
+  join(round_up(address + bytes) - kHugePage);
 #endif
 }
 
@@ -78,11 +73,11 @@ MeshMemory reserve_mesh(IsoMesh& mesh, const MeshSize& size) {
               std::clamp(mesh.n_faces(), std::size_t(1), size.triangles));
   const MeshMemory reserved = memory_of(mesh);
   if (fresh) {
-    ask_for_huge_pages(reserved.connectivity.half_edges, size.edges * sizeof(IsoMesh::Edge));
-    ask_for_huge_pages(reserved.connectivity.vertex_half_edge, size.vertices * sizeof(IsoMesh::Vertex));
-    ask_for_huge_pages(reserved.connectivity.face_half_edge, size.triangles * sizeof(IsoMesh::Face));
-    ask_for_huge_pages(reserved.positions, size.vertices * sizeof(IsoMesh::Point));
-    ask_for_huge_pages(reserved.normals, size.vertices * sizeof(IsoMesh::Normal));
+    lay_in_huge_pages(reserved.connectivity.half_edges, size.edges * sizeof(IsoMesh::Edge));
+    lay_in_huge_pages(reserved.connectivity.vertex_half_edge, size.vertices * sizeof(IsoMesh::Vertex));
+    lay_in_huge_pages(reserved.connectivity.face_half_edge, size.triangles * sizeof(IsoMesh::Face));
+    lay_in_huge_pages(reserved.positions, size.vertices * sizeof(IsoMesh::Point));
+    lay_in_huge_pages(reserved.normals, size.vertices * sizeof(IsoMesh::Normal));
   }
   return reserved;
 }
