@@ -4,7 +4,6 @@
 #include <isolux/core/parallel.h>
 
 #include <algorithm>
-#include <array>
 #include <bit>
 #include <cmath>
 #include <cstddef>
@@ -22,9 +21,10 @@
 namespace isolux::wide {
 namespace {
 
-/// Buckets whose sites are gathered and sorted at once: few, to save memory; several, to save passes over the sites.
-constexpr std::size_t kBucketsAGroup = 4;
+/// Sites that are gathered and sorted at once, in buckets next to each other: few, to save memory, and such a part of
+/// all that passes over them are few.
 constexpr std::size_t kSitesAGroup = std::size_t(1) << 17;
+constexpr std::size_t kMostGroups = 16;
 /// Buckets whose cell codes are made at once.
 constexpr std::size_t kBucketsACode = CellCodes::kMaxThresholds;
 /// Whose inner cubes are told by a byte.
@@ -155,16 +155,19 @@ class SiteBuckets {
  public:
   /// `least`: of each bucket's signed isovalues; none is below the first.
   SiteBuckets(const Wanted& sites, const std::vector<float>& least, const Index3& size, const Run& run)
-      : sites_(sites), least_(least), counts_(block_count(sites.size(), kSitesAPass) * least.size()) {
+      : sites_(sites),
+        least_(least),
+        rank_(least),
+        most_(std::max(kSitesAGroup, sites.size() / kMostGroups)),
+        counts_(block_count(sites.size(), kSitesAPass) * least.size()) {
     // Whole bricks would do; large volumes keep what a number leaves of the place.
     const int bits = 3 * int(std::bit_width(unsigned(std::max({size.x, size.y, size.z}))));
     coarser_ = std::max(kPlaceBits, bits - kNumberBits);
-    const LevelRank rank(least_);
     parallel_blocks(sites.size(), kSitesAPass, run, "", [&](const Block& block) {
       std::uint32_t* const counts = &counts_[block.index * least_.size()];
       for (std::size_t i = block.begin; i < block.end; ++i) {
         const float value = sites_.level(i);
-        if (value >= least_.front() && value < kBeyondAll) ++counts[rank.reached(value) - 1];
+        if (value >= least_.front() && value < kBeyondAll) ++counts[rank_.reached(value) - 1];
       }
     });
   }
@@ -174,18 +177,16 @@ class SiteBuckets {
   void list(std::size_t first, const Run& run) {
     first_ = first;
     last_ = group_end();
-    const std::vector<std::size_t> begins = place_parts();
+    std::vector<std::size_t> next = place_parts();
     const float low = least_[first_];
     const float high = last_ < least_.size() ? least_[last_] : kBeyondAll;
     parallel_blocks(sites_.size(), kSitesAPass, run, "", [&](const Block& block) {
-      std::array<std::size_t, kBucketsAGroup> next{};
-      std::copy_n(&begins[block.index * kBucketsAGroup], kBucketsAGroup, next.begin());
+      std::size_t* const places = &next[block.index * (last_ - first_)];
       for (std::size_t i = block.begin; i < block.end; ++i) {
         const float value = sites_.level(i);
         if (!(value >= low && value < high)) continue;
-        std::size_t bucket = first_;
-        while (bucket + 1 < last_ && value >= least_[bucket + 1]) ++bucket;
-        entries_[next[bucket - first_]++] = morton(sites_.position(i)) >> coarser_ << kNumberBits | sites_.number(i);
+        entries_[places[rank_.reached(value) - 1 - first_]++] =
+            morton(sites_.position(i)) >> coarser_ << kNumberBits | sites_.number(i);
       }
     });
     parallel_blocks(last_ - first_, 1, run, "", [&](const Block& block) {
@@ -201,13 +202,12 @@ class SiteBuckets {
   }
 
  private:
-  /// As few buckets as make some sites, so that a part of the volume's sites, in a few large buckets, is not listed
-  /// all at once.
+  /// At least one bucket, and more while their sites are no more than go into a group.
   [[nodiscard]] std::size_t group_end() const {
     std::size_t last = first_;
-    for (std::size_t count = 0; last < std::min(least_.size(), first_ + kBucketsAGroup); ++last) {
+    for (std::size_t count = 0; last < least_.size(); ++last) {
       for (std::size_t at = last; at < counts_.size(); at += least_.size()) count += counts_[at];
-      if (last > first_ && count > kSitesAGroup) break;
+      if (last > first_ && count > most_) break;
     }
     return last;
   }
@@ -218,27 +218,29 @@ class SiteBuckets {
   /// Where each part of the sites puts those of each bucket of the group.
   [[nodiscard]] std::vector<std::size_t> place_parts() {
     const std::size_t parts = counts_.size() / least_.size();
-    std::vector<std::size_t> begins(parts * kBucketsAGroup);
+    std::vector<std::size_t> begins(parts * (last_ - first_));
+    bucket_begins_.assign(1, 0);
     std::size_t next = 0;
     for (std::size_t bucket = first_; bucket < last_; ++bucket) {
-      bucket_begins_[bucket - first_] = next;
       for (std::size_t part = 0; part < parts; ++part) {
-        begins[part * kBucketsAGroup + bucket - first_] = next;
+        begins[part * (last_ - first_) + bucket - first_] = next;
         next += counts_[part * least_.size() + bucket];
       }
+      bucket_begins_.push_back(next);
     }
-    bucket_begins_[last_ - first_] = next;
     entries_.resize(next);
     return begins;
   }
 
   const Wanted& sites_;
   const std::vector<float>& least_;
+  LevelRank rank_;
+  std::size_t most_;                   ///< sites of a group of several buckets
   std::vector<std::uint32_t> counts_;  ///< of each part of the sites, by bucket
   int coarser_ = kPlaceBits;
   std::size_t first_ = 0;  ///< of the buckets that are listed
   std::size_t last_ = 0;
-  std::array<std::size_t, kBucketsAGroup + 1> bucket_begins_{};
+  std::vector<std::size_t> bucket_begins_;
   std::vector<Entry> entries_;
 };
 
