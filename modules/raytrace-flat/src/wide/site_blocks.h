@@ -42,7 +42,7 @@ struct BlockRequest {
 /// bucket of isovalues (equal shares of the sites, up to 255 of them), within a bucket in Morton order, so that
 /// neighbours in time are neighbours in memory. Neither the blocks nor their order in memory depend on the number of
 /// threads. Memory: half a byte a cell, 16 bytes a brick of 4^3 cells, 9 bits a cube of 2^3, and 8 bytes for each site
-/// of the buckets at work. \throw Cancelled
+/// that is listed: a sixteenth of them, 131,072, or those of one bucket. \throw Cancelled
 void for_each_block(const Volume& volume, const Sites& sites, const BlockRequest& request, const Run& run,
                     std::string_view stage, const std::function<void(const SiteBlock&)>& body);
 
