@@ -92,8 +92,9 @@ void FitBlocks::invert(const Run& run) {
   invert_symmetric(terms_);
 }
 
-FitVector FitBlocks::apply(const FitVector& x, const Run& run) const {
-  FitVector y{.numbers = std::vector<float>(x.numbers.size(), 0.0f), .terms = {}};
+void FitBlocks::apply(const FitVector& x, FitVector& y, const Run& run) const {
+  y.numbers.assign(x.numbers.size(), 0.0f);
+  y.terms.fill(0.0);
   parallel_blocks(texels_, kBlocksTogether, run, "", [&](const Block& block) {
     for (std::size_t j = 0; j < numbers_; ++j) {
       float* to = &y.numbers[j * texels_];
@@ -106,7 +107,6 @@ FitVector FitBlocks::apply(const FitVector& x, const Run& run) const {
   });
   for (std::size_t s = 0; s < y.terms.size(); ++s)
     for (std::size_t t = 0; t < y.terms.size(); ++t) y.terms[s] += terms_[std::min(s, t)][std::max(s, t)] * x.terms[t];
-  return y;
 }
 
 }  // namespace isolux

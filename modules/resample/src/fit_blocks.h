@@ -27,8 +27,8 @@ class FitBlocks {
 
   /// Turns blocks, symmetric and positive but for rounding, into their inverses.
   void invert(const Run& run);
-  /// The inverses times x.
-  [[nodiscard]] FitVector apply(const FitVector& x, const Run& run) const;
+  /// y = the inverses times x.
+  void apply(const FitVector& x, FitVector& y, const Run& run) const;
 
  private:
   template <std::size_t kNumbers>

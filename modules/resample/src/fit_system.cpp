@@ -55,17 +55,6 @@ FitVector FitSystem::zero() const {
   return {.numbers = std::vector<float>(texels_->size() * terms().count(), 0.0f), .terms = {}};
 }
 
-FitVector FitSystem::damped(const FitDamping& damping, const FitVector& x) const {
-  FitVector y = zero();
-  const std::size_t size = texels_->size();
-  parallel_blocks(size, 16384, run_, "", [&](const Block& block) {
-    for (std::size_t k = 0; k < terms().count(); ++k)
-      for (std::size_t t = block.begin; t < block.end; ++t)
-        y.numbers[k * size + t] = float(damping[k]) * texel_weights_[t] * x.numbers[k * size + t];
-  });
-  return y;
-}
-
 template <class Value>
 std::vector<float> FitSystem::texel_means(const Value& value, std::vector<float>& coverage) const {
   std::vector<float> means(texels_->size(), 0.0f);
@@ -111,9 +100,9 @@ FitRest FitSystem::rest(const FitChannel& light, const FitVector& prior, const F
                         const ValueRange& bounds) const {
   FitRest rest{.gradient = zero(), .weights = std::vector<float>(rows_->size(), 0.0f)};
   FitVector& y = rest.gradient;
-  std::vector<float> sum(prior.numbers);
-  for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += x.numbers[i];
-  const std::vector<float> moved = texels_->moved(sum, run_);
+  std::vector<float> moved(prior.numbers);
+  for (std::size_t i = 0; i < moved.size(); ++i) moved[i] += x.numbers[i];
+  texels_->move(moved, run_);
   const wide::FitLight of{.light = light.first,
                           .stride = light.stride,
                           .samples = rows_->samples().data(),
@@ -124,29 +113,38 @@ FitRest FitSystem::rest(const FitChannel& light, const FitVector& prior, const F
   for_each_line(rows_->weights(), [&](const wide::FitCells& cells, std::size_t layer) {
     kernels_.left(cells, of, moved.data(), x.terms, y.numbers.data(), layers[layer], rest.weights.data());
   });
-  finish(layers, -1.0, damped(damping, x), y);
+  finish(layers, -1.0f, damping, x, y);
   return rest;
 }
 
-FitVector FitSystem::normal_product(const FitVector& x, const FitDamping& damping,
-                                    std::span<const float> weights) const {
-  FitVector y = zero();
-  const std::vector<float> moved = texels_->moved(x.numbers, run_);
+void FitSystem::normal_product(const FitVector& x, const FitDamping& damping, std::span<const float> weights,
+                               FitVector& y, std::vector<float>& moved) const {
+  y.numbers.assign(x.numbers.size(), 0.0f);
+  y.terms.fill(0.0);
+  moved = x.numbers;
+  texels_->move(moved, run_);
   wide::FitTermSums<float> terms{};
   for (std::size_t t = 0; t < kTerms; ++t) terms[t] = float(x.terms[t]);
   std::vector<Terms> layers(std::size_t(texels_->cells().z), Terms{});
   for_each_line(weights, [&](const wide::FitCells& cells, std::size_t layer) {
     kernels_.product(cells, moved.data(), terms, y.numbers.data(), layers[layer]);
   });
-  finish(layers, 1.0, damped(damping, x), y);
-  return y;
+  finish(layers, 1.0f, damping, x, y);
 }
 
-void FitSystem::finish(const std::vector<Terms>& layers, double sign, const FitVector& damped, FitVector& y) const {
+void FitSystem::finish(const std::vector<Terms>& layers, float sign, const FitDamping& damping, const FitVector& x,
+                       FitVector& y) const {
   for (const Terms& layer : layers)
     for (std::size_t t = 0; t < kTerms; ++t) y.terms[t] += layer[t];
   texels_->move_back(y.numbers, run_);
-  add_scaled(y, sign, damped, run_);
+  const std::size_t size = texels_->size();
+  parallel_blocks(size, 16384, run_, "", [&](const Block& block) {
+    for (std::size_t k = 0; k < terms().count(); ++k) {
+      const float held = float(damping[k]);
+      for (std::size_t t = block.begin; t < block.end; ++t)
+        y.numbers[k * size + t] += sign * (held * texel_weights_[t] * x.numbers[k * size + t]);
+    }
+  });
 }
 
 FitBlocks FitSystem::inverse_blocks(const FitDamping& damping, std::span<const float> weights) const {

@@ -48,9 +48,9 @@ class FitSystem {
   /// What prior + x leaves of the samples, read as light within `bounds`.
   [[nodiscard]] FitRest rest(const FitChannel& light, const FitVector& prior, const FitVector& x,
                              const FitDamping& damping, const ValueRange& bounds) const;
-  /// (A^T W A + damping) x.
-  [[nodiscard]] FitVector normal_product(const FitVector& x, const FitDamping& damping,
-                                         std::span<const float> weights) const;
+  /// y = (A^T W A + damping) x. `moved` is room for work; that and y's are kept from call to call.
+  void normal_product(const FitVector& x, const FitDamping& damping, std::span<const float> weights, FitVector& y,
+                      std::vector<float>& moved) const;
   /// The inverses of the blocks of A^T W A + damping.
   [[nodiscard]] FitBlocks inverse_blocks(const FitDamping& damping, std::span<const float> weights) const;
 
@@ -61,16 +61,16 @@ class FitSystem {
  private:
   using Terms = FitRows::Terms;
 
-  /// damping * the texels' weights * x
-  [[nodiscard]] FitVector damped(const FitDamping& damping, const FitVector& x) const;
   /// Calls visit(cells, layer) for every row of cells along x, with rows of these weights.
   template <class Visit>
   void for_each_line(std::span<const float> weights, const Visit& visit) const;
   /// Means of value(row) over the rows around each texel, by the weights with which they read it; their sums.
   template <class Value>
   [[nodiscard]] std::vector<float> texel_means(const Value& value, std::vector<float>& coverage) const;
-  /// From what the kernels leave to a vector: adds the layers' terms in order, and sign * damped.
-  void finish(const std::vector<Terms>& layers, double sign, const FitVector& damped, FitVector& y) const;
+  /// From what the kernels leave to a vector: adds the layers' terms in order, and sign * damping * the texels' weights
+  /// * x.
+  void finish(const std::vector<Terms>& layers, float sign, const FitDamping& damping, const FitVector& x,
+              FitVector& y) const;
 
   wide::FitKernels kernels_;
   const Run& run_;

@@ -93,18 +93,16 @@ wide::FitCentres FitTexels::centres() const {
   return centres;
 }
 
-std::vector<float> FitTexels::moved(std::span<const float> numbers, const Run& run) const {
-  std::vector<float> to(numbers.begin(), numbers.end());
+void FitTexels::move(std::span<float> numbers, const Run& run) const {
   parallel_blocks(size(), kTexelsABlock, run, "", [&](const Block& block) {
-    float* slopes = to.data() + size();
+    float* slopes = numbers.data() + size();
     for (std::size_t n = block.begin; terms_.slopes && n < block.end; ++n) slopes[n] *= inverse_breadths_[n];
     for (std::size_t a = 0; terms_.normals && a < 3; ++a) {
-      const float* along = to.data() + (terms_.first_normal() + a) * size();
+      const float* along = numbers.data() + (terms_.first_normal() + a) * size();
       const float* normals = normals_[a].data();
-      for (std::size_t n = block.begin; n < block.end; ++n) to[n] -= normals[n] * along[n];
+      for (std::size_t n = block.begin; n < block.end; ++n) numbers[n] -= normals[n] * along[n];
     }
   });
-  return to;
 }
 
 void FitTexels::move_back(std::span<float> sums, const Run& run) const {

@@ -38,10 +38,10 @@ class FitTexels {
   [[nodiscard]] float reference(const wide::FitCells& cells, std::size_t cell) const {
     return isovalues_[cells.texels[0][cell]];
   }
-  /// Planes of numbers as samples' features want them: slopes over the scaled isovalue, and the normals from which the
-  /// numbers along them count moved into the values.
-  [[nodiscard]] std::vector<float> moved(std::span<const float> numbers, const Run& run) const;
-  /// The transpose of moved(), in place.
+  /// Makes planes of numbers what samples' features want: slopes over the scaled isovalue, and the normals from which
+  /// the numbers along them count moved into the values.
+  void move(std::span<float> numbers, const Run& run) const;
+  /// The transpose of move().
   void move_back(std::span<float> sums, const Run& run) const;
   [[nodiscard]] const Index3& cells() const { return cells_; }
 

@@ -42,7 +42,8 @@ TEST(FitBlocks, InvertEachTexelsBlock) {
       });
     }
     blocks.invert({});
-    const FitVector back = blocks.apply(product, {});
+    FitVector back;
+    blocks.apply(product, back, {});
     for (std::size_t i = 0; i < x.numbers.size(); ++i) EXPECT_NEAR(back.numbers[i], x.numbers[i], 1e-4f);
     for (std::size_t t = 0; t < x.terms.size(); ++t) EXPECT_NEAR(back.terms[t], x.terms[t], 1e-9);
   }
@@ -59,7 +60,8 @@ TEST(FitBlocks, StayPositiveOfTooFewSamples) {
   for (int tries = 0; tries < 100; ++tries) {
     FitVector x{.numbers = std::vector<float>(10), .terms = {1.0, 1.0, 1.0, 1.0}};
     for (float& v : x.numbers) v = 2.0f * random.uniform_float() - 1.0f;
-    const FitVector y = blocks.apply(x, {});
+    FitVector y;
+    blocks.apply(x, y, {});
     for (std::size_t i = 0; i < 10; ++i) EXPECT_TRUE(std::isfinite(y.numbers[i]));
     for (std::size_t k = 0; k < 5; ++k) EXPECT_EQ(y.numbers[2 * k + 1], 0.0f);
     for (const double term : y.terms) EXPECT_EQ(term, 0.0);

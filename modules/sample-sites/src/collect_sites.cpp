@@ -12,6 +12,14 @@ constexpr std::uint64_t kLargestRound = std::uint64_t(1) << 22;  // bounds the m
 
 }  // namespace
 
+Sites room_for_sites(std::size_t count) {
+  Sites sites;
+  sites.positions.reserve(count);
+  sites.isovalues.reserve(count);
+  sites.normals.reserve(count);
+  return sites;
+}
+
 void append_sites(Sites& all, const Sites& more, std::size_t count) {
   const auto n = std::ptrdiff_t(std::min(more.size(), count));
   all.positions.insert(all.positions.end(), more.positions.begin(), more.positions.begin() + n);
@@ -35,8 +43,8 @@ Sites sites_of_range(const Volume& volume, const SiteRequest& request, const Act
 
 Sites collect_sites(const Volume& volume, const SiteRequest& request, const ActiveCells& cells, std::size_t count,
                     const UnitSequence& sequence, const Run& run) {
-  Sites sites;
-  if (cells.empty() || count == 0) return sites;
+  if (cells.empty() || count == 0) return {};
+  Sites sites = room_for_sites(count);
   const std::uint64_t budget = count * kCandidatesPerSite;
   std::uint64_t tried = 0;
   while (sites.size() < count && tried < budget) {

@@ -28,6 +28,8 @@ inline constexpr std::uint64_t kCandidatesPerSite = 1024;
                                    std::uint64_t first, std::uint64_t last, const UnitSequence& sequence,
                                    const Run& run);
 
+/// None yet, and room for so many: growing bit by bit would copy them, and clear memory for them, several times.
+[[nodiscard]] Sites room_for_sites(std::size_t count);
 /// Appends the first `count` of `more`, or all if there are fewer.
 void append_sites(Sites& all, const Sites& more, std::size_t count);
 

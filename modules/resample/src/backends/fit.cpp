@@ -98,28 +98,31 @@ class Fit final : public Resampler {
                                 const FitVector& prior, const ValueRange& bounds, const Run& run) const {
     FitVector x = system.zero();
     for (int round = 0; round < kRounds; ++round) {
-      const FitRest rest = system.rest(light, prior, x, damping, bounds);
-      descend(system, damping, rest, options_.iterations, x, run);
+      descend(system, damping, system.rest(light, prior, x, damping, bounds), options_.iterations, x, run);
     }
     return x;
   }
 
   /// Hestenes & Stiefel, "Methods of conjugate gradients for solving linear systems", 1952, with the texels' own blocks
   /// as preconditioner.
-  static void descend(const FitSystem& system, const FitDamping& damping, const FitRest& rest, int iterations,
-                      FitVector& x, const Run& run) {
+  static void descend(const FitSystem& system, const FitDamping& damping, FitRest rest, int iterations, FitVector& x,
+                      const Run& run) {
     const FitBlocks inverse = system.inverse_blocks(damping, rest.weights);
-    FitVector residual = rest.gradient;
-    FitVector step = inverse.apply(residual, run);
+    FitVector& residual = rest.gradient;
+    FitVector step;
+    FitVector image;
+    FitVector scaled;
+    std::vector<float> room;
+    inverse.apply(residual, step, run);
     double error = product(residual, step, run);
     const double enough = 1e-8 * error;
     for (int i = 0; i < iterations && error > enough; ++i) {
-      const FitVector image = system.normal_product(step, damping, rest.weights);
+      system.normal_product(step, damping, rest.weights, image, room);
       const double length = error / product(step, image, run);
       add_scaled(x, length, step, run);
       if (i + 1 == iterations) return;
       add_scaled(residual, -length, image, run);
-      const FitVector scaled = inverse.apply(residual, run);
+      inverse.apply(residual, scaled, run);
       const double next = product(residual, scaled, run);
       add_to_scaled(step, next / error, scaled, run);
       error = next;

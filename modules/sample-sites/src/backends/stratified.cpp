@@ -51,7 +51,7 @@ class StratifiedSampler final : public SiteSampler {
     const double candidates = std::min(double(count) * double(pilot_count) / std::max(1.0, double(found)),
                                        double(count) * double(kCandidatesPerSite));
     const Index3 strata = strata_for(candidates, lengths);
-    Sites sites;
+    Sites sites = room_for_sites(count + count / 16);  // the pilot knows their share to some percent
     const auto total = product(strata);
     for (std::uint64_t first = 0; first < total; first += kRound) {
       Sites more = sites_of_range(volume, request, cells, first, std::min(total, first + kRound),
