@@ -66,6 +66,11 @@ void say_what_was_done(const BakeResult& result, const Session& session) {
     session.warn(
         "reflections have not settled: light that hardly fades, as of an albedo near 1 in a closed space, may be far "
         "off");
+  if (const auto it = result.skipped.find("paths_cut"); it != result.skipped.end())
+    session.warn(
+        fmt::format("{} paths were cut off after the most reflections (tracer.longest_path): behind narrow ways out of "
+                    "white surfaces the light is too dark; --bounce-method iterated knows no such limit",
+                    it->second));
   if (result.seconds_beyond_time > 0.0)
     session.warn(
         fmt::format("--time {} is exceeded by {:.2g} s: {} rays of each of {} sites took so long; fewer texels "

@@ -253,6 +253,9 @@ BakeResult bake(const Volume& volume, const Scene& scene, const BakeSettings& gi
   const double seconds = seconds_of_light(result);
   if (given.target_seconds > 0.0 && seconds > kOvertime * given.target_seconds)
     result.seconds_beyond_time = seconds - given.target_seconds;
+  // By need and iterated, paths only judge, without those that are cut off.
+  if (result.sweeps == 0 && settings.texel_sites == TexelSites::kAll && result.counters.cut > 0)
+    result.skipped["paths_cut"] = result.counters.cut;
   result.settings = as_done(std::move(settings), result);
   return result;
 }

@@ -61,13 +61,28 @@ HeldOut::HeldOut(const Volume& volume, const Scene& scene, const Sites& sites, s
                  const TraceSettings& settings, const Run& run)
     : numbers_(std::move(numbers)) {
   const auto tracer = tracers().create("wide");
+  std::vector<std::uint8_t> is_known(numbers_.size(), 1);
   for (std::uint64_t side = 0; side < 2; ++side) {
     Run own = run;
     own.seed = mix_bits(run.seed ^ mix_bits(1 + side));
     TraceResult traced = tracer->trace(volume, scene, sites, settings, own);
     light_[side] = std::move(traced.samples.radiance);
+    for (std::size_t i = 0; i < traced.cut.size(); ++i) is_known[i] &= std::uint8_t(traced.cut[i] == 0);
     add(counters_, traced.counters);
   }
+  leave_out_unknown(is_known);
+}
+
+void HeldOut::leave_out_unknown(const std::vector<std::uint8_t>& is_known) {
+  const std::size_t channels = numbers_.empty() ? 1 : light_[0].size() / numbers_.size();
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < numbers_.size(); ++i) {
+    if (is_known[i] == 0) continue;
+    for (std::vector<float>& light : light_) std::copy_n(&light[i * channels], channels, &light[kept * channels]);
+    numbers_[kept++] = numbers_[i];
+  }
+  numbers_.resize(kept);
+  for (std::vector<float>& light : light_) light.resize(kept * channels);
 }
 
 HeldOut::SquaredError HeldOut::squared_error(std::span<const float> light) const {

@@ -15,7 +15,8 @@ namespace isolux {
 
 /// Places whose light is traced to judge what was found there otherwise and never used for it: traced twice by paths,
 /// with other random numbers. Paths have no bias, so the mean product of both differences is the mean squared error
-/// whatever is wrong with the light, be it how reflections were read.
+/// whatever is wrong with the light, be it how reflections were read. Places of which paths were cut off
+/// (TraceResult::cut) are left out.
 class HeldOut {
  public:
   /// Of the light to judge, site i is number `numbers[i]`. \throw Cancelled
@@ -32,6 +33,9 @@ class HeldOut {
   [[nodiscard]] const TraceCounters& counters() const { return counters_; }
 
  private:
+  /// Places of which paths were cut off: nobody knows their light.
+  void leave_out_unknown(const std::vector<std::uint8_t>& is_known);
+
   std::vector<std::size_t> numbers_;
   std::array<std::vector<float>, 2> light_;
   TraceCounters counters_;

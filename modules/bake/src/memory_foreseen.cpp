@@ -113,6 +113,8 @@ double memory_foreseen(const Volume& volume, const Scene& scene, const BakeSetti
     resampling = bytes_of_fit(settings, volume.lattice(), double(texels.count()), sites, channels);
   else if (!resampler->takes_parts())
     resampling += 38.0 * sites;
+  // Sites at texels are found in pieces and joined.
+  const double finding = settings.sampler.name == "texels" ? light + 2.0 * kSite * sites : 0.0;
   double tracing = sample * sites;
   if (iterates(settings) && settings.trace.bounces != 0) {
     // Seven floats a channel while reflections are iterated, and the isovalue. Under a uniform sky places may go.
@@ -122,7 +124,7 @@ double memory_foreseen(const Volume& volume, const Scene& scene, const BakeSetti
   } else if (has_target(settings) && settings.trace.bounces == 0 && lamps == 0.0) {
     tracing = (kSite + 8.0 * channels + 8.0) * sites + bytes_of_links(settings, sites);
   }
-  return always + std::max(tracing, resampling);
+  return always + std::max({finding, tracing, resampling});
 }
 
 }  // namespace isolux

@@ -32,6 +32,7 @@ ReadingError::ReadingError(const Volume& volume, const Scene& scene, const Sites
     : held_out_(hold_out(volume, scene, sites, settings, run)) {}
 
 double ReadingError::of(const SampleSet& samples) const {
+  if (held_out_.numbers().empty()) return 0.0;
   std::vector<float> variances;
   for (const std::size_t i : held_out_.numbers()) variances.push_back(samples.variance[i]);
   const double noise = standard_error(variances);

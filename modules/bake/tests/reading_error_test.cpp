@@ -1,12 +1,16 @@
 // What reading reflections from texels is wrong by, where few sites can be held out to measure it.
 #include <gtest/gtest.h>
 #include <isolux/bake.h>
+#include <isolux/core/field.h>
 #include <isolux/volume_io/read.h>
 
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <vector>
+
+#include "held_out.h"
 
 namespace isolux::test {
 namespace {
@@ -44,6 +48,26 @@ TEST(ReadingError, IsNotDeniedByALuckyDrawOfSites) {
     const BakeResult asked = bake(volume, {}, settings, builtin_stages(), {.seed = seed});
     EXPECT_LT(true_error(asked.light, one, other), 1.4 * 0.004);  // formerly up to .0074
   }
+}
+
+TEST(HeldOut, LeavesOutPlacesWhosePathsAreCutOff) {
+  // On two spheres about the middle of the box with white walls: one closed, one that is hardly there.
+  const Volume volume = read_volume("gen:cavity:33");
+  Scene scene;
+  scene.albedo = {.keys = {{0.0f, Vec3f(1.0f)}}};
+  const TrilinearField field(volume);
+  Sites sites;
+  for (const Vec3& p : {Vec3(3.2, 16.0, 16.0), Vec3(2.5, 2.5, 16.5)}) {
+    sites.positions.emplace_back(p);
+    sites.isovalues.push_back(float(field.value(p)));
+    sites.normals.emplace_back(field.normal(p, scene.outer, GradientKind::kCell));
+  }
+  const HeldOut held_out(volume, scene, sites, {7, 3}, {.rays = 16}, isolux::Run{});
+  ASSERT_EQ(held_out.numbers().size(), 1u);
+  EXPECT_EQ(held_out.numbers()[0], 3u);
+  std::vector<float> light(8, 0.5f);
+  light[3] = 0.75f;
+  EXPECT_NEAR(held_out.squared_error(light).mean, 0.0625, 1e-5);
 }
 
 }  // namespace

@@ -2,7 +2,6 @@
 
 #include <isolux/core/parallel.h>
 
-#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <utility>
@@ -12,8 +11,6 @@ namespace {
 
 constexpr std::size_t kDepth = 2;
 constexpr std::size_t kABlock = 65536;
-/// A slower fall of the changes is taken for noise: no error is guessed at more than twenty times the change.
-constexpr double kSlowest = 0.95;
 
 }  // namespace
 
@@ -27,11 +24,15 @@ void Anderson::Products::operator+=(const Products& more) {
   older_newer += more.older_newer;
 }
 
-Anderson::Products Anderson::products(const Step& now) const {
-  std::vector<Products> parts(block_count(now.change.size(), kABlock));
+Anderson::ByChannel Anderson::products(const Step& now) const {
+  const std::size_t channels = contractions_.size();
+  std::vector<ByChannel> parts(block_count(now.change.size(), kABlock));
   parallel_blocks(now.change.size(), kABlock, run_, "", [&](const Block& block) {
-    Products sum;
+    ByChannel sums{};
+    std::size_t channel = block.begin % channels;
     for (std::size_t i = block.begin; i < block.end; ++i) {
+      Products& sum = sums[channel];
+      if (++channel == channels) channel = 0;
       const auto change = double(now.change[i]);
       sum.change += change * change;
       sum.image += double(now.image[i]) * double(now.image[i]);
@@ -45,24 +46,27 @@ Anderson::Products Anderson::products(const Step& now) const {
       sum.older_change += older * change;
       sum.older_newer += older * newer;
     }
-    parts[block.index] = sum;
+    parts[block.index] = sums;
   });
-  Products sum;
-  for (const Products& part : parts) sum += part;
-  return sum;
+  ByChannel sums{};
+  for (const ByChannel& part : parts)
+    for (std::size_t c = 0; c < channels; ++c) sums[c] += part[c];
+  return sums;
 }
 
-std::vector<double> Anderson::mix(const Products& of) const {
+Anderson::Weights Anderson::mix(const Products& of) const {
   if (past_.empty()) return {};
-  if (past_.size() == 1) return {of.newer > 0.0 ? of.newer_change / of.newer : 0.0};
-  const double determinant = of.older * of.newer - of.older_newer * of.older_newer;
   // Nearly parallel differences say the same: the newer one is enough.
-  if (!(determinant > 1e-6 * of.older * of.newer)) return {0.0, of.newer > 0.0 ? of.newer_change / of.newer : 0.0};
+  const Weights newer{0.0, of.newer > 0.0 ? of.newer_change / of.newer : 0.0};
+  if (past_.size() < kDepth) return newer;
+  const double determinant = of.older * of.newer - of.older_newer * of.older_newer;
+  if (!(determinant > 1e-6 * of.older * of.newer)) return newer;
   return {(of.older_change * of.newer - of.newer_change * of.older_newer) / determinant,
           (of.newer_change * of.older - of.older_change * of.older_newer) / determinant};
 }
 
-std::vector<float> Anderson::mixed(const Step& now, const std::vector<double>& weights) {
+std::vector<float> Anderson::mixed(const Step& now, const std::array<Weights, kMostChannels>& weights) {
+  const std::size_t channels = contractions_.size();
   std::vector<float> next;
   const bool is_deep = past_.size() == kDepth;
   if (is_deep) {
@@ -71,10 +75,13 @@ std::vector<float> Anderson::mixed(const Step& now, const std::vector<double>& w
     next.resize(now.image.size());
   }
   parallel_blocks(next.size(), kABlock, run_, "", [&](const Block& block) {
+    std::size_t channel = block.begin % channels;
     for (std::size_t i = block.begin; i < block.end; ++i) {
+      const auto [older, newer] = weights[channel];
+      if (++channel == channels) channel = 0;
       auto x = double(now.image[i]);
-      if (is_deep) x -= weights[0] * double(past_.back().image[i] - next[i]);
-      if (!past_.empty()) x -= weights.back() * double(now.image[i] - past_.back().image[i]);
+      if (is_deep) x -= older * double(past_.back().image[i] - next[i]);
+      if (!past_.empty()) x -= newer * double(now.image[i] - past_.back().image[i]);
       next[i] = float(x);
     }
   });
@@ -86,18 +93,23 @@ double Anderson::step(std::vector<float>& x, std::vector<float>& image) {
   parallel_blocks(now.image.size(), kABlock, run_, "", [&](const Block& block) {
     for (std::size_t i = block.begin; i < block.end; ++i) now.change[i] = now.image[i] - now.change[i];
   });
-  const Products of = products(now);
-  x = mixed(now, mix(of));
+  const ByChannel of = products(now);
+  std::array<Weights, kMostChannels> weights{};
+  double left = 0.0;
+  double size = 0.0;
+  for (std::size_t c = 0; c < contractions_.size(); ++c) {
+    weights[c] = mix(of[c]);
+    const double most = contractions_[c] / (1.0 - contractions_[c]);
+    left += most * most * of[c].change;
+    size += of[c].image;
+  }
+  x = mixed(now, weights);
   if (past_.size() == kDepth) {
     image = std::move(past_.front().change);
     past_.erase(past_.begin());
   }
   past_.push_back(std::move(now));
-  const double norm = std::sqrt(of.change);
-  const double size = std::sqrt(of.image);
-  if (last_norm_ > 0.0) rate_ = std::max(rate_, std::min(kSlowest, norm / last_norm_));
-  last_norm_ = norm;
-  return size > 0.0 ? norm / size * rate_ / (1.0 - rate_) : 0.0;
+  return size > 0.0 ? std::sqrt(left / size) : 0.0;
 }
 
 }  // namespace isolux

@@ -20,8 +20,20 @@ namespace {
 constexpr std::size_t kSitesABlock = 8192;
 /// From this albedo on reflections hardly fade, and what an acceleration overshoots stays.
 constexpr float kNearlyWhite = 0.999f;
+/// Whiter surfaces are taken for that white: what is left to come is at most a hundred times a change then, where there
+/// is no bound with albedos of 1.
+constexpr double kSlowest = 0.99;
 /// Of its light, what a site must lose for that to be more than rounding.
 constexpr float kLeastLost = 1e-5f;
+
+/// By what a reflection brings light nearer to what it ends at, at least, by channel.
+std::vector<double> contractions(const Scene& scene, std::size_t channels) {
+  std::vector<double> most(channels, 0.0);
+  for (const auto& key : scene.albedo.keys)
+    for (std::size_t c = 0; c < channels; ++c)
+      most[c] = std::min(kSlowest, std::max(most[c], double(key.colour[int(c)])));
+  return most;
+}
 
 /// Whether no value differs by more than a unit in the last place of the largest.
 bool differ_by_rounding(const std::vector<float>& one, const std::vector<float>& other) {
@@ -101,7 +113,7 @@ TargetLight LightLinks::Solver::before_last(const SolveSettings& settings, std::
     for (std::size_t i = 0; i < e_.size(); ++i)
       e_[i] = start[numbers_.empty() ? i : numbers_[i / channels_] * channels_ + i % channels_];
   ends_one_of_ = std::max<std::size_t>(settings.ends_one_of, 1);
-  Anderson anderson(run_);
+  Anderson anderson(contractions(scene_, channels_), run_);
   while (solution.sweeps < settings.most_sweeps) {
     ++solution.sweeps;
     reflect(at_targets(e_), next);

@@ -93,6 +93,7 @@ Vec3 PathTracer::radiance(const Vec3& origin, const Vec3& normal, float isovalue
                                      last ? RootWish::kExists : RootWish::kPlace, kInfinity, counters);
     if (!hit) return sum + throughput * escaped_light(vertex, towards);
     sum += throughput * emission;
+    counters.cut += std::uint64_t(depth == limits_.longest_path && depth != settings_.bounces);
     if (last) return sum;
 
     throughput *= albedo;

@@ -2,6 +2,9 @@
 #include <gtest/gtest.h>
 #include <isolux/core/error.h>
 
+#include <cstdint>
+#include <vector>
+
 #include "physics_support.h"
 
 namespace isolux::test {
@@ -135,6 +138,39 @@ TEST_P(TracerContract, SitesExactlyOnGridPointsFacesAndEdges) {
     if (radius > 0.49 && radius < 0.52) continue;
     EXPECT_NEAR(samples.radiance[i], radius > 0.5 ? 1.0 : 0.0, 1e-5) << radius;
   }
+}
+
+TEST_P(TracerContract, PathsThatAreCutOffAreCounted) {
+  // A closed ball of white walls, where all paths go on for ever, and one that is wide open.
+  const Volume volume = cavity(33);
+  const TrilinearField field(volume);
+  Sites sites;
+  for (const double x : {0.1, 0.15}) {
+    const Vec3 p = Vec3(x, 0.5, 0.5) * 32.0;
+    sites.positions.emplace_back(p);
+    sites.isovalues.push_back(float(field.value(p)));
+    sites.normals.emplace_back(field.normal(p, OuterSide::kLower, GradientKind::kCell));
+  }
+  sites.positions.emplace_back(2.5f, 2.5f, 16.5f);
+  sites.isovalues.push_back(float(field.value(Vec3(sites.positions.back()))));
+  sites.normals.emplace_back(field.normal(Vec3(sites.positions.back()), OuterSide::kLower, GradientKind::kCell));
+  const auto traced = [&](float albedo, int bounces) {
+    return tracers()
+        .create(GetParam())
+        ->trace(volume, furnace(albedo), sites, {.rays = 8, .bounces = bounces}, isolux::Run{});
+  };
+  const TraceResult white = traced(1.0f, kAllBounces);
+  EXPECT_GE(white.counters.cut, 16u);
+  EXPECT_EQ(white.samples.radiance[0], 0.0f);
+  EXPECT_NEAR(white.samples.radiance[2], 1.0f, 1e-5f);
+  if (GetParam() == "wide") {
+    EXPECT_EQ(white.cut, (std::vector<std::uint32_t>{8, 8, 0}));
+  }
+  for (const TraceResult& other : {traced(0.8f, kAllBounces), traced(1.0f, 1000), traced(1.0f, 3)}) {
+    EXPECT_EQ(other.counters.cut, 0u);
+    EXPECT_TRUE(other.cut.empty());
+  }
+  EXPECT_GT(traced(1.0f, 1001).counters.cut, 0u);
 }
 
 }  // namespace

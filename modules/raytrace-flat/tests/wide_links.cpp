@@ -134,6 +134,27 @@ TEST(LightLinks, KeepTheEmissiveFurnaceWhite) {
   for (const float e : solution.samples.radiance) EXPECT_NEAR(e, 1.0f, 1e-5f);
 }
 
+TEST(LightLinks, LeaveNoMoreThanTheyAreTold) {
+  const Volume volume = noise({32, 30, 28}, 3);
+  std::vector<std::size_t> texel;
+  const LightLinks links(volume, cell_sites(volume, OuterSide::kLower, texel), {.rays = 16}, isolux::Run{});
+  Scene coloured = furnace(0.9f);
+  coloured.albedo = {.keys = {{0.0f, {0.3f, 0.8f, 0.97f}}}};
+  coloured.environment = half_sky({0.0f, 0.0f, 1.0f});
+  for (const Scene& scene : {furnace(0.9f), furnace(0.97f), coloured}) {
+    const std::vector<float> light = links.solve(scene, {}, {}, isolux::Run{}).samples.radiance;
+    const std::vector<float> end = links.solve(scene, {.tolerance = 1e-6}, {}, isolux::Run{}).samples.radiance;
+    double left = 0.0;
+    double squares = 0.0;
+    for (std::size_t i = 0; i < end.size(); ++i) {
+      left += double(light[i] - end[i]) * double(light[i] - end[i]);
+      squares += double(end[i]) * double(end[i]);
+    }
+    EXPECT_GT(left, 0.0);
+    EXPECT_LT(std::sqrt(left / squares), 0.002);
+  }
+}
+
 TEST(LightLinks, FindNoMoreReflectionsThanChangeAnything) {
   const Volume volume = gyroid(17);
   std::vector<std::size_t> texel;

@@ -1,8 +1,11 @@
 #include <isolux/raytrace_flat/flat_tracer.h>
 
+#include <algorithm>
 #include <cstddef>
+#include <cstdint>
 #include <utility>
 #include <variant>
+#include <vector>
 
 #include "bright_light.h"
 #include "bright_parts.h"
@@ -32,7 +35,9 @@ class WideTracer final : public FlatTracer {
     SampleSet& samples = result.samples;
     samples.sites = std::move(sites);
     SiteRays found = wide::light_and_calibrate(samples, run, [&](SampleSet& some, const Run& own, SiteRays& rays) {
-      light(volume, scene, settings, own, some, rays, result.counters);
+      std::vector<std::uint32_t> cut;
+      light(volume, scene, settings, own, some, rays, cut, result.counters);
+      if (&some == &samples) result.cut = std::move(cut);
     });
     result.rays = std::move(found.sky);
     return result;
@@ -40,13 +45,13 @@ class WideTracer final : public FlatTracer {
 
  private:
   void light(const Volume& volume, const Scene& scene, const TraceSettings& settings, const Run& run,
-             SampleSet& samples, SiteRays& rays, TraceCounters& counters) const {
+             SampleSet& samples, SiteRays& rays, std::vector<std::uint32_t>& cut, TraceCounters& counters) const {
     samples.channels = is_grey(scene) ? 1 : 3;
     wide::put_darkness(samples, std::size_t(settings.rays));
     if (settings.bounces == 0)
       without_reflections(volume, scene, settings, run, samples, rays, counters);
     else
-      with_reflections(volume, scene, settings, run, samples, counters);
+      with_reflections(volume, scene, settings, run, samples, cut, counters);
   }
 
   /// What is seen of the sky, suns and other lamps each by what asks least; their sums and variances add up.
@@ -54,7 +59,8 @@ class WideTracer final : public FlatTracer {
                            SampleSet& samples, SiteRays& rays, TraceCounters& counters) const {
     Scene lamps = scene;
     std::erase_if(lamps.lights, [](const Light& light) { return std::holds_alternative<SunLight>(light); });
-    if (!lamps.lights.empty()) by_paths(volume, lamps_of(lamps), settings, run, samples, nullptr, counters);
+    std::vector<std::uint32_t> none_cut;
+    if (!lamps.lights.empty()) by_paths(volume, lamps_of(lamps), settings, run, samples, nullptr, none_cut, counters);
     const SceneParts parts(scene);
     if (parts.bright() != nullptr)
       add(counters, add_bright_light(volume, scene.outer, *parts.bright(), settings, run, samples));
@@ -86,14 +92,14 @@ class WideTracer final : public FlatTracer {
   }
 
   void with_reflections(const Volume& volume, const Scene& scene, const TraceSettings& settings, const Run& run,
-                        SampleSet& samples, TraceCounters& counters) const {
+                        SampleSet& samples, std::vector<std::uint32_t>& cut, TraceCounters& counters) const {
     if (!tells_apart(scene, settings, false)) {
-      by_paths(volume, scene, settings, run, samples, nullptr, counters);
+      by_paths(volume, scene, settings, run, samples, nullptr, cut, counters);
       return;
     }
     SampleSet lamps{
         .sites = {}, .channels = samples.channels, .radiance = samples.radiance, .variance = samples.variance};
-    by_paths(volume, scene, settings, run, samples, &lamps, counters);
+    by_paths(volume, scene, settings, run, samples, &lamps, cut, counters);
     wide::tell_lamps_apart(samples, lamps);
   }
 
@@ -102,13 +108,15 @@ class WideTracer final : public FlatTracer {
   }
 
   void by_paths(const Volume& volume, const Scene& scene, const TraceSettings& settings, const Run& run,
-                SampleSet& samples, SampleSet* lamps, TraceCounters& counters) const {
+                SampleSet& samples, SampleSet* lamps, std::vector<std::uint32_t>& cut, TraceCounters& counters) const {
     const wide::PathWaves waves(volume, scene, settings, options_.limits, run.seed, samples.sites);
+    if (waves.cuts_paths()) cut.assign(samples.size(), 0);
     const wide::BlockRequest request{.outer = scene.outer, .rays_per_site = waves.aimer().rays()};
     add(counters,
         wide::trace_blocks(volume, samples.sites, request, run, [&](const wide::SiteBlock& block, TraceCounters& part) {
-          waves.light(block, samples, lamps, part);
+          waves.light(block, samples, lamps, cut, part);
         }));
+    if (std::all_of(cut.begin(), cut.end(), [](std::uint32_t paths) { return paths == 0; })) cut.clear();
   }
 
   Options options_;

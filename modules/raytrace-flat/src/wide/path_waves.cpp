@@ -72,19 +72,37 @@ UnitPair PathWaves::numbers(const Wave& wave, const Path& path, std::uint32_t di
       .pair(path.ray % rays, std::uint32_t(wave.depth) * pairs_a_vertex + dimension);
 }
 
-void PathWaves::light(const SiteBlock& block, SampleSet& samples, SampleSet* lamps, TraceCounters& counters) const {
+bool PathWaves::cuts_paths() const {
+  constexpr float kLasting = 0.98f;
+  const bool is_limited = settings_.bounces == kAllBounces || settings_.bounces > limits_.longest_path;
+  return is_limited && largest_albedo(scene_) > kLasting;
+}
+
+void PathWaves::count_cut(const Wave& wave, std::span<std::uint32_t> cut, TraceCounters& counters) const {
+  for (std::size_t i = 0; i < wave.batch.rays.count; ++i) {
+    const Path& path = wave.paths[i];
+    if (wave.batch.rays.t[i] == kEscaped || wave.materials[path.ray / aimer_.rays()].is_black) continue;
+    ++counters.cut;
+    if (!cut.empty()) ++cut[wave.sites[path.ray / aimer_.rays()]];
+  }
+}
+
+void PathWaves::light(const SiteBlock& block, SampleSet& samples, SampleSet* lamps, std::span<std::uint32_t> cut,
+                      TraceCounters& counters) const {
   static thread_local Wave wave;
   start(block, samples.sites, wave);
   wave.lamps.assign(lamps != nullptr ? wave.value.size() : 0, Vec3(0.0));
   for (wave.depth = 0; !wave.paths.empty(); ++wave.depth) {
     if (!lights_.empty() || environment_.has_samples()) direct_light(block, wave, counters);
-    if (is_dark(wave)) break;
-    if (wave.depth > 0) aim(wave);
     const bool none_goes_on = wave.depth == settings_.bounces || wave.depth == limits_.longest_path;
+    const bool cuts = none_goes_on && wave.depth != settings_.bounces;
+    if (is_dark(wave) && !cuts) break;
+    if (wave.depth > 0) aim(wave);
     trace(block.field, block.occupancy, block.inner, none_goes_on ? Question::kAnyHit : Question::kFirstHit,
           wave.batch.rays, counters);
     for (std::size_t i = 0; i < wave.batch.rays.count; ++i)
       counters.hits += std::uint64_t(wave.batch.rays.t[i] != kEscaped);
+    if (cuts) count_cut(wave, cut, counters);
     arrive(block, wave);
   }
   const std::size_t rays = aimer_.rays();

@@ -4,6 +4,7 @@
 #include <isolux/raytrace_flat/flat_tracer.h>
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "environment.h"
@@ -25,9 +26,13 @@ class PathWaves {
             std::uint64_t seed, const Sites& sites);
 
   [[nodiscard]] const Aimer& aimer() const { return aimer_; }
+  /// Whether so many paths may be cut off that it matters: with lower albedos than .98 one of 5e8 goes on.
+  [[nodiscard]] bool cuts_paths() const;
   /// Lights the sites of a block: radiance and variance of `samples`. Those of `lamps`, if there are any, get what
-  /// comes straight from the light sources alone.
-  void light(const SiteBlock& block, SampleSet& samples, SampleSet* lamps, TraceCounters& counters) const;
+  /// comes straight from the light sources alone. `cut`, unless it is empty, gets how many of each site's paths are cut
+  /// off.
+  void light(const SiteBlock& block, SampleSet& samples, SampleSet* lamps, std::span<std::uint32_t> cut,
+             TraceCounters& counters) const;
 
  private:
   /// What all vertices of a site's paths share: they lie on one level set.
@@ -51,6 +56,8 @@ class PathWaves {
   /// True if no ray of this wave can bring light: light sources were asked apart.
   [[nodiscard]] bool is_dark(const Wave& wave) const;
   void arrive(const SiteBlock& block, Wave& wave) const;
+  /// Counts the paths that would go on but for the limit. \pre this wave is the last for it; arrive() has not been
+  void count_cut(const Wave& wave, std::span<std::uint32_t> cut, TraceCounters& counters) const;
   /// Moves a path to the vertex that its ray has hit; false if it ends there.
   [[nodiscard]] bool go_on(const SiteBlock& block, const Wave& wave, std::size_t ray, Path& path) const;
   void direct_light(const SiteBlock& block, Wave& wave, TraceCounters& counters) const;

@@ -108,7 +108,8 @@ struct BakeResult {
   /// sites_outside_iso_range, texels_predicted. And links_beyond_memory, rays that were not kept
   /// (BakeSettings::most_link_bytes); rounds_beyond_memory, 1 where target_rmse was not reached for that;
   /// reading_beyond_error, 1 where reflections were followed by paths to reach it (kIteratedOrPaths);
-  /// sweeps_beyond_limit, 1 where iterated reflections had not settled when they ended.
+  /// sweeps_beyond_limit, 1 where iterated reflections had not settled when they ended; paths_cut, paths that were cut
+  /// off (TraceCounters::cut), so that the light misses what they would have met.
   std::map<std::string, std::uint64_t> skipped;
   double seconds_beyond_time = 0.0;       ///< beyond target_seconds, where it was exceeded by more than a quarter
   std::map<std::string, double> seconds;  ///< by stage: sites, trace, bounces (of kIterated), resample

@@ -38,6 +38,9 @@ struct TraceResult {
   SampleSet samples;
   std::vector<std::uint32_t>
       rays{};  ///< of each site under the sky, where their numbers differ; empty: TraceSettings::rays
+  /// Of each site, how many paths were cut off (TraceCounters::cut), as in pockets of albedos near 1 that nothing or
+  /// hardly anything leads out of; empty: none, or the tracer (`scalar`) does not tell whose.
+  std::vector<std::uint32_t> cut{};
   TraceCounters counters;
 };
 

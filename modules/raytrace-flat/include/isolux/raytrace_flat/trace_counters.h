@@ -13,6 +13,7 @@ struct TraceCounters {
   std::uint64_t cubics = 0;      ///< solved
   std::uint64_t proven = 0;      ///< hits told without following the ray: it is seen on the inner side further on
   std::uint64_t known = 0;       ///< rays to suns that were not traced: those of the sites about told
+  std::uint64_t cut = 0;  ///< paths that went on beyond the most reflections: what they would have met is missing
 };
 
 inline void add(TraceCounters& sum, const TraceCounters& part) {
@@ -23,6 +24,7 @@ inline void add(TraceCounters& sum, const TraceCounters& part) {
   sum.cubics += part.cubics;
   sum.proven += part.proven;
   sum.known += part.known;
+  sum.cut += part.cut;
 }
 
 inline TraceCounters operator-(TraceCounters all, const TraceCounters& part) {
@@ -33,6 +35,7 @@ inline TraceCounters operator-(TraceCounters all, const TraceCounters& part) {
   all.cubics -= part.cubics;
   all.proven -= part.proven;
   all.known -= part.known;
+  all.cut -= part.cut;
   return all;
 }
 
