@@ -100,6 +100,19 @@ class Messages(CommandLineTest):
 
 
 class WithoutEffect(CommandLineTest):
+    def test_are_words_of_headerless_files_for_others(self):
+        layout = ("--dims", "8x8x8", "--type", "float32", "--endian", "little")
+        self.succeed("convert", "gen:sphere:8", "s.nrrd")
+        self.succeed("convert", "gen:sphere:8", "s_8x8x8_float32.raw")
+        for command in (("info",), ("convert", "-", "c.nrrd"), ("bake", "-", "-o", "l.nrrd", "--rays", 1),
+                        ("render", "-", "--iso", -0.3, "-o", "i.png", "--size", "20x10"), ("extract", "-", "--iso", -0.3, "-o", "m.ply")):
+            for source, words, warned in (("gen:sphere:8", layout, "--dims, --type, --endian have"), ("gen:sphere:8", layout[:4], "--dims, --type have"),
+                                          ("s.nrrd", layout[4:], "--endian has"), ("s_8x8x8_float32.raw", layout, None),
+                                          ("s_8x8x8_float32.raw", layout[4:], None), ("s.nrrd", (), None)):
+                said = self.succeed(command[0], source, *command[2:], *words, "--quiet").stderr
+                told = f"isolux: warning: {warned} no effect: {source} is no headerless file\n" if warned else ""
+                self.assertEqual(said, told, (command, source, words))
+
     def test_are_words_of_a_light_that_is_not_given_or_not_shown(self):
         self.succeed("bake", "gen:sphere:8", "-o", "light.nrrd", "--rays", 1, "--quiet")
         light = ("--light", "light.nrrd")

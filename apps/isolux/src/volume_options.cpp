@@ -1,5 +1,7 @@
 #include "volume_options.h"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <isolux/core/error.h>
 #include <isolux/volume_io/read.h>
 #include <isolux/volume_io/scalar_type.h>
@@ -38,7 +40,7 @@ void VolumeOptions::add_to(CLI::App& command, Session& session) {
   command.add_option("--type", type_, "scalar type of a headerless file, such as uint8 or float32")->type_name("TYPE");
   command.add_option("--spacing", spacing_, "distance of grid points, world units; replaces the file's")
       ->type_name("SX,SY,SZ");
-  command.add_option("--endian", endian_, "byte order of a headerless file")
+  command.add_option("--endian", endian_, "byte order of a headerless file (default little)")
       ->check(CLI::IsMember({"little", "big"}))
       ->type_name("ORDER");
   command.add_option("--replace-nonfinite", replacement_, "value for voxels that are infinite or not a number")
@@ -91,6 +93,16 @@ ReadOptions VolumeOptions::read_options(const Session& session) const {
   return options;
 }
 
+/// Words of headerless files alone.
+void VolumeOptions::warn_of_no_effect(const ReadOptions& options, const Session& session) const {
+  std::vector<std::string> words;
+  if (!dims_.empty()) words = {"--dims", "--type"};
+  if (!endian_.empty()) words.emplace_back("--endian");
+  if (words.empty() || takes_layout(source_, options, session.stages.readers)) return;
+  session.warn(fmt::format("{} {} no effect: {} is no headerless file", fmt::join(words, ", "),
+                           words.size() == 1 ? "has" : "have", source_));
+}
+
 StoredVolume VolumeOptions::read_in(VoxelForm form, Session& session) const {
   const ReadOptions options = read_options(session);
   std::optional<float> replacement;
@@ -104,6 +116,7 @@ StoredVolume VolumeOptions::read_in(VoxelForm form, Session& session) const {
     }
   };
   StoredVolume volume = session.timed("read", [&] { return with_memory_for("the values of " + source_, read); });
+  warn_of_no_effect(options, session);
   for (const std::string& remark : volume.remarks) session.warn(remark);
   warn_of_few_values(volume, options.subtract, session);
   if (replacement) replace_nonfinite(volume, *replacement);

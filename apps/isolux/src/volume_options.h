@@ -27,12 +27,13 @@ class VolumeOptions {
  private:
   [[nodiscard]] ReadOptions read_options(const Session& session) const;
   [[nodiscard]] StoredVolume read_in(VoxelForm form, Session& session) const;
+  void warn_of_no_effect(const ReadOptions& options, const Session& session) const;
 
   std::string source_;
   std::string dims_;
   std::string type_;
   std::string spacing_;
-  std::string endian_ = "little";
+  std::string endian_;
   std::string replacement_;
   std::string nodata_;
   std::string subtract_;

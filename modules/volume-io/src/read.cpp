@@ -100,4 +100,12 @@ std::vector<std::string> volume_files(const std::string& source, const ReadOptio
   return volume_files(source, options, readers());
 }
 
+bool takes_layout(const std::string& source, const ReadOptions& options, const Registry<VolumeReader>& registry) {
+  return reader_of(source, options, registry)->takes_layout();
+}
+
+bool takes_layout(const std::string& source, const ReadOptions& options) {
+  return takes_layout(source, options, readers());
+}
+
 }  // namespace isolux

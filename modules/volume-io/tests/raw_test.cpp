@@ -55,6 +55,19 @@ TEST(Raw, ReadsItsLayoutFromTheName) {
   EXPECT_EQ(detail::parse_raw_name("a_1x2x9999999999_uint8.raw"), std::nullopt);
 }
 
+TEST(Raw, AloneTakesALayout) {
+  const test::TemporaryFolder folder;
+  const auto named = folder.write("a_2x1x1_uint8.raw", "ab");
+  const auto other = folder.write("a.bin", "ab");
+  EXPECT_TRUE(takes_layout(named));
+  EXPECT_TRUE(takes_layout(other, layout({2, 1, 1}, ScalarType::kUint8, false)));
+  EXPECT_THROW((void)takes_layout(other), InvalidInput);
+  EXPECT_FALSE(takes_layout("gen:sphere:4", layout({4, 4, 4}, ScalarType::kFloat32, true)));
+  const auto nrrd = folder.file("a.nrrd");
+  write_volume(read_volume("gen:sphere:4"), nrrd);
+  EXPECT_FALSE(takes_layout(nrrd));
+}
+
 TEST(Raw, RoundTripsUnderItsOwnNameOnly) {
   const test::TemporaryFolder folder;
   Volume volume = read_volume("gen:gyroid:5");

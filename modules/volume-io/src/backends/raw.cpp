@@ -23,6 +23,8 @@ class RawReader final : public VolumeReader {
     return detail::has_extension(source, ".raw") ? 1 : 0;
   }
 
+  [[nodiscard]] bool takes_layout() const override { return true; }
+
   [[nodiscard]] StoredVolume read(const std::string& source, const ReadOptions& options,
                                   const Run& run) const override {
     const std::uint64_t found = detail::require_file(source);

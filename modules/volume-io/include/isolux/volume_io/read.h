@@ -29,6 +29,12 @@ namespace isolux {
                                                     const Registry<VolumeReader>& registry);
 [[nodiscard]] std::vector<std::string> volume_files(const std::string& source, const ReadOptions& options = {});
 
+/// Whether a source is read as headerless: else ReadOptions::raw and big_endian change nothing. \throw as read_volume()
+/// where nobody claims it
+[[nodiscard]] bool takes_layout(const std::string& source, const ReadOptions& options,
+                                const Registry<VolumeReader>& registry);
+[[nodiscard]] bool takes_layout(const std::string& source, const ReadOptions& options = {});
+
 /// SHA-256 over size, frame and values as floats (little endian), the same whichever type they are held in: what ties a
 /// light file to its volume, in lower-case hexadecimal.
 [[nodiscard]] std::string volume_sha256(const VolumeView& volume);

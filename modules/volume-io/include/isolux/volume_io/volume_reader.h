@@ -67,6 +67,8 @@ class VolumeReader {
                                                        const ReadOptions& /*options*/) const {
     return {source};
   }
+  /// Whether it takes what files do not say of themselves: ReadOptions::raw and big_endian.
+  [[nodiscard]] virtual bool takes_layout() const { return false; }
 };
 
 /// raw, nrrd, npy, mrc, nifti, vtk and analytic, and those whose libraries were there when it was built: vti and itk.
