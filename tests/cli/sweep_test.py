@@ -69,10 +69,13 @@ class Sweeps(CommandLineTest):
     def test_are_warned_of_in_one_line(self):
         self.succeed("bake", SPHERE, "-o", "light.nrrd", "--rays", 1, "--iso-range=-0.4:-0.3", "--quiet")
         for command, end in (("render", "png"), ("extract", "ply")):
-            said = self.succeed(command, SPHERE, "--iso=-0.35,-0.2,3,5,4", "-o", f"f%d.{end}", "--light", "light.nrrd", "--quiet").stderr
+            said = self.succeed(command, SPHERE, "--iso=-0.35,-0.2,3,5,4,-0.25", "-o", f"f%d.{end}", "--light", "light.nrrd", "--quiet").stderr
             self.assertEqual(said.count("\n"), 2, said)
             self.assertIn(f"3 isovalues, 3 to 5, lie outside the values of {SPHERE}", said)
-            self.assertIn("4 isovalues, -0.2 to 5, lie outside the range -0.4 to -0.3 that the light is of", said)
+            self.assertIn("2 isovalues, -0.25 to -0.2, lie outside the range -0.4 to -0.3 that the light is of", said)
+            said = self.succeed(command, SPHERE, "--iso=5", "-o", f"f.{end}", "--light", "light.nrrd", "--quiet").stderr
+            self.assertEqual(said.count("isolux: warning: "), 1, said)  # what is not there has no light that could be missing
+            self.assertIn("there is no surface", said)
 
     def test_share_one_camera(self):
         """In a frame of the surfaces the largest of all reaches from side to side."""

@@ -3,8 +3,6 @@
 #include <fmt/format.h>
 #include <isolux/bake/light_metadata.h>
 
-#include <vector>
-
 #include "isovalue_option.h"
 #include "usage.h"
 
@@ -25,18 +23,21 @@ ExtractSettings CapOptions::settings(float isovalue, OuterSide outer) const {
           .min_component = min_component};
 }
 
-void warn_of_no_surface(const VolumeView& volume, std::span<const ExtractSettings> surfaces, const Session& session) {
+std::vector<float> isovalues_of_surfaces(const VolumeView& volume, std::span<const ExtractSettings> surfaces,
+                                         const Session& session) {
   const ValueRange range = value_range(volume);
+  std::vector<float> inside;
   std::vector<float> outside;
   for (const ExtractSettings& surface : surfaces) {
     const float isovalue = surface.isovalue;
     const bool is_full = surface.outer == OuterSide::kLower ? range.low >= isovalue : range.high <= isovalue;
     const bool is_box = surface.cap == CapKind::kBox && is_full;
-    if (!is_box && !(isovalue >= range.low && isovalue <= range.high)) outside.push_back(isovalue);
+    (is_box || (isovalue >= range.low && isovalue <= range.high) ? inside : outside).push_back(isovalue);
   }
-  if (outside.empty()) return;
-  session.warn(fmt::format("{} outside the values of {} ({} to {}): there is no surface", isovalues_lie(outside),
-                           volume.name(), range.low, range.high));
+  if (!outside.empty())
+    session.warn(fmt::format("{} outside the values of {} ({} to {}): there is no surface", isovalues_lie(outside),
+                             volume.name(), range.low, range.high));
+  return inside;
 }
 
 Scene scene_of_cap(const LightFile& baked, const TraceOptions& given, const Session& session) {

@@ -7,6 +7,7 @@
 #include <CLI/App.hpp>
 #include <cstddef>
 #include <span>
+#include <vector>
 
 #include "bake_options.h"
 #include "session.h"
@@ -23,8 +24,11 @@ struct CapOptions {
   [[nodiscard]] ExtractSettings settings(float isovalue, OuterSide outer) const;
 };
 
-/// Says so where no voxel is on one side of an isovalue: there is no surface, unless a cap closes the whole box.
-void warn_of_no_surface(const VolumeView& volume, std::span<const ExtractSettings> surfaces, const Session& session);
+/// The isovalues of which there is a surface. Warns of the others: no voxel is on one side of them, and no cap closes
+/// the whole box.
+[[nodiscard]] std::vector<float> isovalues_of_surfaces(const VolumeView& volume,
+                                                       std::span<const ExtractSettings> surfaces,
+                                                       const Session& session);
 
 /// Whose light a cap beside baked light is in: the light's own, else, where its file does not tell all of it, the scene
 /// that is given, else, with a warning, a white sky. \throw as TraceOptions::scene()

@@ -166,12 +166,12 @@ void extract(const Subject& subject, const BackendChoice& choice, const ExtractO
     surfaces.push_back(options.parts.settings(isovalue, outer));
     surfaces.back().normals = normal_kind(options.normals);
   }
-  warn_of_no_surface(volume, surfaces, session);
+  const std::vector<float> there = isovalues_of_surfaces(volume, surfaces, session);
   std::optional<VertexLighter> lighter;
   if (options.is_lit() && holds_colours(options.output))
     lighter.emplace(*subject.floats, scene, light, options, session);
   if (lighter && light)
-    warn_outside_light(*light, isovalues, session,
+    warn_outside_light(*light, there, session,
                        options.exact_light ? "it is no help to --exact-light" : "what is shown is not its light");
   MeshMaker maker = session.timed("extract", [&] { return MeshMaker(volume, choice, outputs.size(), session); });
   IsoMesh mesh;

@@ -83,8 +83,8 @@ void draw(const Volume& volume, const std::optional<LightFile>& light, const Ren
   RenderSettings settings =
       picture_settings(options, options.outer.or_else(light ? light_outer(*light) : OuterSide::kLower));
   const std::vector<ExtractSettings> meshes = meshes_of(options, isovalues, settings.outer);
-  warn_of_no_surface(volume, meshes, session);
-  if (light && is_global) warn_outside_light(*light, isovalues, session);
+  const std::vector<float> there = isovalues_of_surfaces(volume, meshes, session);
+  if (light && is_global) warn_outside_light(*light, there, session);
   std::optional<IsoExtractor> extractor;
   if (options.needs_meshes())
     session.timed("extract", [&] {
