@@ -97,6 +97,14 @@ class WithoutColours(CommandLineTest):
         self.assertIn("isovalue -0.3 lies outside the range", self.succeed(*extract, "m.ply").stderr)
         self.assertIn("no help to --exact-light", self.succeed(*extract, "a.ply", "--exact-light", "--rays", 1).stderr)
 
+    def test_gives_exact_light_its_scene_and_bounces_as_the_help_says(self):
+        usage = " ".join(self.succeed("extract", "--help").stdout.split())
+        self.assertIn("(default: those of --light, else uniform white sky, albedo 0.8)", usage)
+        self.assertIn("(default: those of --light, else all)", usage)
+        usage = " ".join(self.succeed("bake", "--help").stdout.split())
+        self.assertIn("(default: uniform white sky, albedo 0.8)", usage)
+        self.assertIn("(default: all)", usage)
+
 
 class Measures(CommandLineTest):
     def test_of_an_open_surface_have_no_volume(self):

@@ -20,9 +20,11 @@ void TraceOptions::add_scene_to(CLI::App& command, Session& session, const std::
   command.add_option("--scene", scene_, help)->type_name("SCENE.json");
 }
 
-void TraceOptions::add_to(CLI::App& command, Session& session, const std::string& origins) {
-  add_scene_to(command, session, "environment, lights, albedo and emission (default: uniform white sky, albedo 0.8)");
-  command.add_option("--bounces", bounces_, "reflections: a number, or all (default)")->type_name("B|all");
+void TraceOptions::add_to(CLI::App& command, Session& session, const std::string& origins, const std::string& first) {
+  const std::string what = "environment, lights, albedo and emission (default: ";
+  add_scene_to(command, session, what + first + "uniform white sky, albedo 0.8)");
+  command.add_option("--bounces", bounces_, "reflections: a number, or all (default: " + first + "all)")
+      ->type_name("B|all");
   command.add_option("--quality", quality_, "draft, good (default) or reference: 16, 64 or 1024 rays " + origins)
       ->check(CLI::IsMember({"draft", "good", "reference"}));
   command.add_option("--rays", rays_, "rays " + origins + "; overrides --quality")

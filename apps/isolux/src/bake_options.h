@@ -14,8 +14,9 @@ namespace isolux {
 /// --exact-light`.
 class TraceOptions {
  public:
-  /// `origins`: from what each so many rays start, "a site" or the like.
-  void add_to(CLI::App& command, Session& session, const std::string& origins);
+  /// `origins`: from what each so many rays start, "a site" or the like. `first`: what scene and bounces are taken from
+  /// before their defaults, "X, else ".
+  void add_to(CLI::App& command, Session& session, const std::string& origins, const std::string& first = "");
   /// --scene alone.
   void add_scene_to(CLI::App& command, Session& session, const std::string& help);
   /// \throw UsageError, IoError, InvalidInput

@@ -223,7 +223,7 @@ void add_extract_command(CLI::App& program, Session& session) {
   command.add_flag("--exact-light", options->exact_light,
                    "trace the light at the vertices; with --light too, that light's scene is taken and, where they are "
                    "few, half the rays do");
-  options->trace.add_to(command, session, "a vertex");
+  options->trace.add_to(command, session, "a vertex", "those of --light, else ");
   options->outer.add_to(command,
                         "the side that is outside: lower or higher values (default: what the light or scene says)");
   command.add_option("--exposure", options->exposure, "stops by which the colours are made brighter")

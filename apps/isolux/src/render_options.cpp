@@ -80,7 +80,8 @@ void RenderOptions::add_to(CLI::App& command, Session& session) {
       ->type_name("STOPS");
   outer.add_to(command, "the side that is outside: lower or higher values (default: what the light says)");
   parts.add_to(command);
-  trace.add_scene_to(command, session, "what lights a cap, where the light does not tell all of its scene");
+  trace.add_scene_to(command, session,
+                     "what lights a cap, where the light does not tell all of its scene (default: uniform white sky)");
 }
 
 View RenderOptions::looking() const {
