@@ -31,7 +31,7 @@ Sites places_to_judge(const Volume& volume, const Scene& scene, const BakeSettin
 
 /// e as it is read at the sites.
 std::vector<float> read_at(const Volume& volume, const Sites& sites, const IlluminationGrid& light, const Run& run) {
-  const LightReader reader(volume, light, TexelStorage::kDense, run);
+  const LightReader reader(volume, light, TexelStorage::kLent, run);
   const auto channels = std::size_t(light.channels);
   std::vector<float> found(sites.size() * channels);
   for (std::size_t i = 0; i < sites.size(); ++i) {

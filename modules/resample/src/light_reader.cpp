@@ -9,6 +9,7 @@
 #include <glm/common.hpp>
 #include <numeric>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "near_field.h"
@@ -61,12 +62,20 @@ struct BrickPlace {
   }
 };
 
+/// A value of a texel of that isovalue and normal, moved to another isovalue and to no normal.
+double moved(const LightDetail& detail, std::size_t v, double value, double isovalue, const Vec3& normal,
+             double to_isovalue) {
+  if (!detail.slopes.empty()) value -= double(detail.slopes[v]) * (isovalue - to_isovalue);
+  if (detail.normal_slopes[0].empty()) return value;
+  for (unsigned a = 0; a < 3; ++a) value -= double(detail.normal_slopes[a][v]) * normal[int(a)];
+  return value;
+}
+
 /// Moving every texel to one isovalue and to no normal makes the sum of texels linear in what is stored, so that
 /// hardware filters it.
 void move_to_isovalue(IlluminationGrid& light, const NearField& near_field, float isovalue, const Run& run) {
   const Index3& size = light.lattice.size;
   const LightDetail& detail = light.detail;
-  const bool turned = !detail.normal_slopes[0].empty();
   const auto channels = std::size_t(light.channels);
   parallel_blocks(std::size_t(size.z) * std::size_t(size.y), 8, run, "", [&](const Block& block) {
     TexelRow row(near_field, light.lattice);
@@ -77,14 +86,89 @@ void move_to_isovalue(IlluminationGrid& light, const NearField& near_field, floa
       for (std::size_t v = r * columns.size() * channels; v < (r + 1) * columns.size() * channels; ++v) {
         const std::size_t n = v / channels - r * columns.size();
         const Vec3 normal(Vec3f(row.ahead(n).downhill));
-        double value = double(light.values[v]);
-        if (!detail.slopes.empty()) value -= double(detail.slopes[v]) * (row.isovalue(n) - double(isovalue));
-        for (unsigned a = 0; turned && a < 3; ++a) value -= double(detail.normal_slopes[a][v]) * normal[int(a)];
-        light.values[v] = float(value);
+        light.values[v] = float(moved(detail, v, double(light.values[v]), row.isovalue(n), normal, double(isovalue)));
       }
     }
   });
 }
+
+void require_finite(const std::vector<float>& values) {
+  if (!std::all_of(values.begin(), values.end(), [](float v) { return std::isfinite(v); }))
+    throw InvalidInput("light whose values, slopes and near field are together beyond floats cannot be read");
+}
+
+/// All of a light but its texels.
+IlluminationGrid without_texels(const IlluminationGrid& light) {
+  IlluminationGrid result;
+  result.lattice = light.lattice;
+  result.channels = light.channels;
+  result.detail.near_field = light.detail.near_field;
+  result.detail.texel_light = light.detail.texel_light;
+  result.detail.ceiling = light.detail.ceiling;
+  result.detail.isovalues = light.detail.isovalues;
+  return result;
+}
+
+/// The eight texels around a point of a grid's index space, moved to one isovalue, and where the point is among them.
+class TexelsAround {
+ public:
+  TexelsAround(const IlluminationGrid& light, const NearField& near_field, float reference, const Vec3& at)
+      : channels_(light.channels) {
+    for (int a = 0; a < 3; ++a) {
+      const int points = light.lattice.size[a];
+      const double x = within_axis(at[a], points);
+      low_[a] = std::min(int(x), std::max(points - 2, 0));
+      size_[a] = std::min(points, 2);
+      place[a] = x - low_[a];
+    }
+    const LightDetail& detail = light.detail;
+    values = taken(light.lattice, light.values);
+    slopes = taken(light.lattice, detail.slopes);
+    for (unsigned a = 0; a < 3; ++a) normal_slopes[a] = taken(light.lattice, detail.normal_slopes[a]);
+    if (!detail.slopes.empty() || !detail.normal_slopes[0].empty()) move_values(light, near_field, reference);
+    require_finite(values.values);
+  }
+
+  Vec3 place{0.0};
+  IlluminationGrid values;
+  IlluminationGrid slopes;
+  std::array<IlluminationGrid, 3> normal_slopes;
+
+ private:
+  [[nodiscard]] IlluminationGrid taken(const Lattice& texels, const std::vector<float>& from) const {
+    IlluminationGrid result;
+    if (from.empty()) return result;
+    result.lattice.size = size_;
+    result.channels = channels_;
+    const auto channels = std::size_t(channels_);
+    for (int k = 0; k < size_.z; ++k)
+      for (int j = 0; j < size_.y; ++j) {
+        const float* const row = &from[texels.offset(low_.x, low_.y + j, low_.z + k) * channels];
+        result.values.insert(result.values.end(), row, row + std::size_t(size_.x) * channels);
+      }
+    return result;
+  }
+
+  void move_values(const IlluminationGrid& light, const NearField& near_field, float reference) {
+    TexelRow row(near_field, light.lattice);
+    const std::array<int, 2> columns = {low_.x, low_.x + 1};
+    const auto channels = std::size_t(channels_);
+    auto value = values.values.begin();
+    for (int k = low_.z; k < low_.z + size_.z; ++k)
+      for (int j = low_.y; j < low_.y + size_.y; ++j) {
+        row.look(j, k, std::span(columns).first(std::size_t(size_.x)));
+        std::size_t v = light.lattice.offset(low_.x, j, k) * channels;
+        for (std::size_t n = 0; n < std::size_t(size_.x) * channels; ++n, ++v, ++value) {
+          const Vec3 normal(Vec3f(row.ahead(n / channels).downhill));
+          *value = float(moved(light.detail, v, double(*value), row.isovalue(n / channels), normal, double(reference)));
+        }
+      }
+  }
+
+  int channels_;
+  Index3 low_{0};
+  Index3 size_{0};
+};
 
 }  // namespace
 
@@ -95,6 +179,11 @@ struct LightReader::Impl {
       const BrickPlace place(*bricks, offsets.lattice.size, texel);
       return sum(bricks->values, bricks->slopes, bricks->normal_slopes, isovalue, normal,
                  [&](const std::vector<float>& from) { return place.read(from, bricks->channels); });
+    }
+    if (lent != nullptr) {
+      const TexelsAround near(*lent, near_field, reference, texel);
+      return sum(near.values, near.slopes, near.normal_slopes, isovalue, normal,
+                 [&](const IlluminationGrid& from) { return from.at_index(near.place); });
     }
     return sum(offsets, slopes, normal_slopes, isovalue, normal,
                [&](const IlluminationGrid& from) { return from.at_index(texel); });
@@ -116,6 +205,7 @@ struct LightReader::Impl {
   IlluminationGrid slopes;
   std::array<IlluminationGrid, 3> normal_slopes;
   std::optional<LightBricks> bricks;
+  const IlluminationGrid* lent = nullptr;
   float reference = 0.0f;
   bool sloped = false;
   bool turned = false;
@@ -124,24 +214,28 @@ struct LightReader::Impl {
 LightReader::LightReader(const Volume& volume, const IlluminationGrid& light, TexelStorage storage, const Run& run) {
   const LightDetail& detail = light.detail;
   require_complete(light);
+  const bool is_lent = storage == TexelStorage::kLent && detail.texel_light != TexelLight::kOwn;
   auto impl = std::make_unique<Impl>(Impl{.near_field = NearField(volume),
                                           .volume_to_texels = index_to_index(volume.lattice(), light.lattice),
                                           .volume_frame = volume.lattice().frame,
-                                          .offsets = light,
+                                          .offsets = is_lent ? without_texels(light) : light,
                                           .slopes = {},
                                           .normal_slopes = {},
                                           .bricks = {},
+                                          .lent = is_lent ? &light : nullptr,
                                           .reference = 0.0f,
                                           .sloped = !detail.slopes.empty(),
                                           .turned = !detail.normal_slopes[0].empty()});
-  if (detail.texel_light == TexelLight::kOwn) take_off_near_field(volume, impl->offsets, run);
   const ValueRange all = value_range(volume);
   const ValueRange lit = detail.isovalues.value_or(all);
   if (impl->sloped) impl->reference = 0.5f * std::max(all.low, lit.low) + 0.5f * std::min(all.high, lit.high);
+  if (is_lent) {
+    impl_ = std::move(impl);
+    return;
+  }
+  if (detail.texel_light == TexelLight::kOwn) take_off_near_field(volume, impl->offsets, run);
   if (impl->sloped || impl->turned) move_to_isovalue(impl->offsets, impl->near_field, impl->reference, run);
-  const std::vector<float>& moved = impl->offsets.values;
-  if (!std::all_of(moved.begin(), moved.end(), [](float v) { return std::isfinite(v); }))
-    throw InvalidInput("light whose values, slopes and near field are together beyond floats cannot be read");
+  require_finite(impl->offsets.values);
   if (storage == TexelStorage::kBricks && (lit.low > all.low || lit.high < all.high)) {
     LightBricks bricks = make_light_bricks(volume, impl->offsets, lit);
     if (bricks.stored() < light.values.size() * std::size_t(detail.numbers())) {

@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 #include <isolux/core/error.h>
+#include <isolux/core/random.h>
 #include <isolux/resample.h>
 
 #include <algorithm>
@@ -109,6 +110,40 @@ TEST(LightReader, HoldsNothingTwice) {
   ASSERT_NE(bricks.bricks(), nullptr);
   EXPECT_EQ(bricks.offsets().values.capacity(), 0u);
   EXPECT_EQ(idle(bricks), 0u);
+}
+
+// What is lent is read as what is held, to the bit, at the box's faces and where an axis has one texel, too.
+TEST(LightReader, ReadsWhatIsLentAlike) {
+  const Volume volume = wavy_volume();
+  RandomStream random(7, 0);
+  const auto numbers = [&](std::size_t count) {
+    std::vector<float> values(count);
+    for (float& value : values) value = random.uniform_float();
+    return values;
+  };
+  for (const Index3& size : {Index3(9, 7, 8), Index3(5, 1, 12)}) {
+    for (const int terms : {1, 2, 5}) {
+      for (const TexelLight own : {TexelLight::kReduced, TexelLight::kOwn}) {
+        IlluminationGrid light(cell_lattice(volume.lattice(), size), terms == 2 ? 3 : 1);
+        light.values = numbers(light.values.size());
+        if (terms > 1) light.detail.slopes = numbers(light.values.size());
+        for (std::vector<float>& slopes : light.detail.normal_slopes)
+          if (terms > 2) slopes = numbers(light.values.size());
+        light.detail.near_field = {{.step = 1.0f, .mean = 0.1f, .weight = Vec3f(0.2f)}};
+        light.detail.texel_light = own;
+        light.detail.isovalues = ValueRange{.low = -0.3f, .high = 0.4f};
+        const LightReader held(volume, light);
+        const LightReader lent(volume, light, TexelStorage::kLent);
+        EXPECT_EQ(lent.offsets().values.empty(), own == TexelLight::kReduced);
+        for (int n = 0; n < 300; ++n) {
+          Vec3 p;
+          for (int a = 0; a < 3; ++a) p[a] = (1.2 * random.uniform_double() - 0.1) * volume.lattice().size[a];
+          EXPECT_EQ(lent.at_index(p), held.at_index(p));
+          EXPECT_EQ(lent.at_index(p, 0.25), held.at_index(p, 0.25));
+        }
+      }
+    }
+  }
 }
 
 TEST(LightReader, RefusesSlopesOfAnotherGrid) {

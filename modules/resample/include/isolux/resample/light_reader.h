@@ -13,8 +13,11 @@ namespace isolux {
 
 /// How a reader holds the texels.
 enum class TexelStorage {
-  kDense,  ///< all of them: offsets() and slopes() are the whole grid's
-  kBricks  ///< those of the light's own range of isovalues in bricks where that is smaller: bricks() are what there is
+  kDense,   ///< all of them: offsets() and slopes() are the whole grid's
+  kBricks,  ///< those of the light's own range of isovalues in bricks where that is smaller: bricks() are what there is
+  /// None but those of TexelLight::kOwn: every reading takes its eight out of the grid, which must outlive the reader.
+  /// For thousands of readings, not for millions; there are no offsets() nor slopes().
+  kLent
 };
 
 /// Reads an illumination grid the best way known, with the volume at hand:
@@ -26,9 +29,10 @@ enum class TexelStorage {
 /// threads; the volume must outlive it.
 class LightReader {
  public:
-  /// One pass over the grid; where it has near-field terms and TexelLight::kOwn, some tenths of a microsecond a texel
-  /// on all threads of `run`. \pre require_usable(volume). \throw InvalidInput if the grid is not complete, its detail
-  /// does not match or they leave the range of floats together; Cancelled
+  /// One pass over the grid, unless it is lent; where it has near-field terms and TexelLight::kOwn, some tenths of a
+  /// microsecond a texel on all threads of `run`. \pre require_usable(volume). \throw InvalidInput if the grid is not
+  /// complete, its detail does not match or they leave the range of floats together (of what is lent, where it is
+  /// read); Cancelled
   LightReader(const Volume& volume, const IlluminationGrid& light, TexelStorage storage = TexelStorage::kDense,
               const Run& run = {});
   LightReader(Volume&& volume, const IlluminationGrid& light, TexelStorage storage = TexelStorage::kDense,
