@@ -184,7 +184,7 @@ void LightLinks::reflect_last(const SceneParts& parts, const SampleSet& lamps, c
   if (rays_.empty())
     wide::calibrate_variance(solution.samples, probes_, again);
   else
-    wide::calibrate_variance_of_chosen(solution.samples, probes_, again, rays_);
+    wide::calibrate_variance_of_chosen(solution.samples, probes_, again, rays_, quiet);
 }
 
 SampleSet LightLinks::reflected(const Scene& scene, const SampleSet& lamps, const TargetLight& light,

@@ -1,5 +1,7 @@
 #include "wide/calibrate_variance.h"
 
+#include <isolux/core/parallel.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -19,6 +21,8 @@ constexpr double kLowVariance = 1.0 / 16.0;
 constexpr std::size_t kLowLevels = 3;
 /// Probes that are enough for the variance of those that are low.
 constexpr std::size_t kEnoughLow = 16;
+/// Sites that are looked at together.
+constexpr std::size_t kSitesABlock = 65536;
 
 /// What some probes' variances say and what their differences show.
 class Tally {
@@ -28,6 +32,12 @@ class Tally {
     squares_ += variance * variance;
     found_ += found;
     ++count_;
+  }
+  void operator+=(const Tally& more) {
+    expected_ += more.expected_;
+    squares_ += more.squares_;
+    found_ += more.found_;
+    count_ += more.count_;
   }
   [[nodiscard]] std::size_t count() const { return count_; }
   [[nodiscard]] double mean_expected() const { return expected_ / double(std::max<std::size_t>(count_, 1)); }
@@ -94,6 +104,20 @@ Tally tally_of_all(const SampleSet& samples) {
   return all;
 }
 
+/// The same of each number of rays, equal bits for any number of threads.
+ByRays<Tally> tallies_of_all(const SampleSet& samples, std::span<const std::uint32_t> rays, const Run& run) {
+  std::vector<ByRays<Tally>> parts(block_count(rays.size(), kSitesABlock));
+  parallel_blocks(rays.size(), kSitesABlock, run, "", [&](const Block& block) {
+    for (std::size_t site = block.begin; site < block.end; ++site)
+      if (samples.variance[site] != kUnknownVariance)
+        parts[block.index][rays[site]].add(double(samples.variance[site]), 0.0);
+  });
+  ByRays<Tally> all;
+  for (const ByRays<Tally>& part : parts)
+    for (const auto& [count, tally] : part) all[count] += tally;
+  return all;
+}
+
 ByRays<double> scales_of(const ByRays<Tally>& by_rays, double scale) {
   ByRays<double> scales;
   for (const auto& [count, tally] : by_rays)
@@ -131,15 +155,16 @@ class LowVariance {
 /// have noise are likelier lucky than those among their like.
 class Luck {
  public:
-  Luck(const SampleSet& samples, std::span<const std::uint32_t> rays) {
-    ByRays<Tally> by_rays;
-    for (std::size_t site = 0; site < rays.size(); ++site)
-      if (samples.variance[site] != kUnknownVariance) by_rays[rays[site]].add(double(samples.variance[site]), 0.0);
-    levels_.resize(rays.size());
-    for (std::size_t site = 0; site < rays.size(); ++site) {
-      double limit = by_rays[rays[site]].mean_expected();
-      while (levels_[site] < kLowLevels && double(samples.variance[site]) <= (limit *= kLowVariance)) ++levels_[site];
-    }
+  /// `by_rays`: tallies_of_all().
+  Luck(const SampleSet& samples, std::span<const std::uint32_t> rays, const ByRays<Tally>& by_rays, const Run& run)
+      : levels_(rays.size()) {
+    parallel_blocks(rays.size(), kSitesABlock, run, "", [&](const Block& block) {
+      for (std::size_t site = block.begin; site < block.end; ++site) {
+        const Tally* const like = by_rays.find(rays[site]);
+        double limit = like != nullptr ? like->mean_expected() : 0.0;
+        while (levels_[site] < kLowLevels && double(samples.variance[site]) <= (limit *= kLowVariance)) ++levels_[site];
+      }
+    });
   }
 
   /// Null for those whose own variance does say something.
@@ -181,9 +206,10 @@ void calibrate_variance(SampleSet& samples, std::span<const std::size_t> probes,
 }
 
 void calibrate_variance_of_chosen(SampleSet& samples, std::span<const std::size_t> probes, const SampleSet& again,
-                                  std::span<const std::uint32_t> rays) {
+                                  std::span<const std::uint32_t> rays, const Run& run) {
   if (!are_known(samples, probes)) return;
-  Luck luck(samples, rays);
+  const ByRays<Tally> tallies = tallies_of_all(samples, rays, run);
+  Luck luck(samples, rays, tallies, run);
   Tally all;
   ByRays<Tally> by_rays;
   for (std::size_t k = 0; k < probes.size(); ++k) {
@@ -197,17 +223,21 @@ void calibrate_variance_of_chosen(SampleSet& samples, std::span<const std::size_
       by_rays[count].add(double(variance), found);
     }
   }
-  const double scale = scale_of_all(all, tally_of_all(samples));
+  Tally sites;
+  for (const auto& [count, tally] : tallies) sites += tally;
+  const double scale = scale_of_all(all, sites);
   const ByRays<double> scales = scales_of(by_rays, scale);
-  for (std::size_t site = 0; site < samples.variance.size(); ++site) {
-    float& variance = samples.variance[site];
-    if (variance == kUnknownVariance) continue;
-    const double* const own = scales.find(rays[site]);
-    const auto by = float(own != nullptr ? *own : scale);
-    if (!samples.lamps_variance.empty()) samples.lamps_variance[site] *= by;
-    const LowVariance* const low = luck.of(site);
-    variance = low != nullptr && low->is_known() ? float(low->of(rays[site])) : by * variance;
-  }
+  parallel_blocks(rays.size(), kSitesABlock, run, "", [&](const Block& block) {
+    for (std::size_t site = block.begin; site < block.end; ++site) {
+      float& variance = samples.variance[site];
+      if (variance == kUnknownVariance) continue;
+      const double* const own = scales.find(rays[site]);
+      const auto by = float(own != nullptr ? *own : scale);
+      if (!samples.lamps_variance.empty()) samples.lamps_variance[site] *= by;
+      const LowVariance* const low = luck.of(site);
+      variance = low != nullptr && low->is_known() ? float(low->of(rays[site])) : by * variance;
+    }
+  });
 }
 
 }  // namespace isolux::wide

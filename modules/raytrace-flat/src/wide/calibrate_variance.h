@@ -1,5 +1,6 @@
 #pragma once
 
+#include <isolux/core/run.h>
 #include <isolux/core/sample_set.h>
 
 #include <cstddef>
@@ -16,8 +17,8 @@ void calibrate_variance(SampleSet& samples, std::span<const std::size_t> probes,
 
 /// The same where sites got their rays by what their own earlier rays said: those whose rays hardly differ may have
 /// been lucky, and were left alone for it. Of as many rays they all have the variance that their probes show; only the
-/// others' are scaled.
+/// others' are scaled. \throw Cancelled
 void calibrate_variance_of_chosen(SampleSet& samples, std::span<const std::size_t> probes, const SampleSet& again,
-                                  std::span<const std::uint32_t> rays);
+                                  std::span<const std::uint32_t> rays, const Run& run);
 
 }  // namespace isolux::wide
