@@ -69,7 +69,7 @@ void say_what_was_done(const BakeResult& result, const Session& session) {
   if (const auto it = result.skipped.find("paths_cut"); it != result.skipped.end())
     session.warn(
         fmt::format("{} paths were cut off after the most reflections (tracer.longest_path): behind narrow ways out of "
-                    "white surfaces the light is too dark; --bounce-method iterated knows no such limit",
+                    "white surfaces the light may be too dark; --bounce-method iterated knows no such limit",
                     it->second));
   if (result.seconds_beyond_time > 0.0)
     session.warn(
