@@ -39,6 +39,11 @@ void report_bake(const BakeResult& result, Session& session) {
   report["skipped"] = result.skipped;
   report["skipped"]["searches_for_hits"] = result.counters.proven;
   report["skipped"]["rays_to_suns"] = result.counters.known;
+  if (const auto it = result.skipped.find("places_unjudged"); it != result.skipped.end())
+    session.warn(fmt::format(
+        "{} of the places that the error is judged by lie in pockets that hardly any path leaves, of nearly "
+        "white surfaces: how wrong the light of such pockets is nobody knows",
+        it->second));
   if (result.seconds_beyond_time > 0.0) report["seconds_beyond_time"] = result.seconds_beyond_time;
   report["link_bytes"] = result.link_bytes;
   report["texels"] = texels.count();
@@ -83,12 +88,21 @@ void say_what_was_done(const BakeResult& result, const Session& session) {
     session.warn("the error asked is not reached: more rays than can be kept; --bounce-method paths needs no memory");
 }
 
+/// Of texels made of several sites.
+const char* what_takes_errors_away(const BakeSettings& settings) {
+  if (settings.sampler.name == "texels") return "texels that are not denoised";
+  if (settings.resampler.name == "fit")
+    return "more texels (--texels-a-cell), or the default's one site at each texel,";
+  return "more --samples, or the default's one site at each texel,";
+}
+
 /// Small volumes and rough light can end above what was asked.
 void say_of_error(const BakeResult& result, double asked, const Session& session) {
   if (!(asked > 0.0 && result.rmse_estimate > kNear * asked)) return;
   std::string why;
-  if (result.noise <= kNear * asked && result.noise > 0.0 && result.settings.sampler.name != "texels")
-    why = "; that is no noise of the rays: more --samples, or the default's one site at each texel, take it away";
+  const double reading = result.reading_error / result.rmse_estimate;
+  if (result.skipped.contains("error_beyond_rays") && reading * reading < 0.5)
+    why = fmt::format("; more rays would hardly take any away: {} do", what_takes_errors_away(result.settings));
   else if (result.reading_error > 0.0)
     why = fmt::format(
         "; reading reflections from texels makes {:.4f} of it, which more texels or --bounce-method paths "

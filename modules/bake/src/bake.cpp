@@ -20,6 +20,7 @@
 #include "resampling_choice.h"
 #include "sites_by_need.h"
 #include "texel_judge.h"
+#include "texel_target.h"
 
 namespace isolux {
 namespace {
@@ -95,6 +96,14 @@ double more_rays_for(double target_rmse, const BakeResult& seen) {
   return noise > allowed ? kMargin * noise / allowed : 0.0;
 }
 
+/// The same where texels are made of several sites.
+double more_rays_for(TexelTarget& target, const BakeResult& seen) {
+  const double noise = seen.noise * seen.noise;
+  target.add(noise, {.mean = seen.rmse_estimate * seen.rmse_estimate});
+  const double wanted = target.wanted_noise();
+  return wanted > 0.0 ? kMargin * noise / wanted : 0.0;
+}
+
 /// One number of rays for all sites: more of them until a bake says that it is enough. What a few rays show of many is
 /// far too much where light is rough, as the noise of nets falls faster than that of independent rays.
 BakeResult bake_towards_target(const Volume& volume, const Scene& scene, const BakeSettings& settings,
@@ -106,6 +115,9 @@ BakeResult bake_towards_target(const Volume& volume, const Scene& scene, const B
   BakeSettings step = settings;
   step.target_rmse = step.target_seconds = 0.0;
   step.trace.rays = first_rays(settings);
+  const bool is_own =
+      are_sites_own(*stages.resamplers.create(settings.resampler.name, settings.resampler.settings), settings);
+  TexelTarget texels(settings.target_rmse);
   for (;;) {
     const double before = watch.seconds();
     BakeResult result = bake_side(volume, scene, step, found, stages, run);
@@ -114,7 +126,10 @@ BakeResult bake_towards_target(const Volume& volume, const Scene& scene, const B
     double factor = std::numeric_limits<double>::infinity();
     if (settings.target_rmse > 0.0) {
       // Of fewer rays all may miss what is bright.
-      const double wanted = rays < kFirstRays ? kMostAStep : more_rays_for(settings.target_rmse, result);
+      double wanted = kMostAStep;
+      if (rays >= kFirstRays)
+        wanted = is_own ? more_rays_for(settings.target_rmse, result) : more_rays_for(texels, result);
+      if (texels.is_beyond_rays()) result.skipped["error_beyond_rays"] = 1;
       if (wanted == 0.0 || wants_paths(settings, result)) return result;
       factor = std::clamp(wanted, kLeastAStep, kMostAStep);
     }

@@ -174,26 +174,37 @@ void finish_light(const Volume& volume, const SampleSet& samples, ResampledGrid 
   result.light.detail.isovalues = settings.isovalues;
 }
 
-void finish_bake(const Volume& volume, SampleSet samples, const Resampler& resampler, const Lattice& texels,
-                 const BakeSettings& settings, const Run& run, BakeResult& result) {
-  result.noise = standard_error(samples.variance);
-  result.rmse_estimate = std::hypot(result.noise, result.reading_error);
+void make_light(const Volume& volume, const SampleSet& samples, const Resampler& resampler, const Lattice& texels,
+                const BakeSettings& settings, const Run& run, BakeResult& result) {
   const Stopwatch watch;
   ResampledGrid partial = resampler.resample(volume, samples, texels, run);
   require_resampled(partial, texels, samples.channels, settings.resampler.name);
   finish_light(volume, samples, std::move(partial), resampler, settings, run, result);
-  if (settings.wants_error_grid) {
-    // Reading is wrong where rays hit, which is also where their number varies.
-    const double scale = result.noise > 0.0 ? result.rmse_estimate / result.noise : 1.0;
-    const SampleSet errors = standard_errors(std::move(samples), scale);
-    // Of other texels it is the mean error around: what is fitted may well be below 0.
-    ResampledGrid grid = are_sites_own(resampler, settings)
-                             ? resampler.resample(volume, errors, texels, run)
-                             : resamplers().create("cell_grid")->resample(volume, errors, texels, run);
-    require_resampled(grid, texels, 1, settings.resampler.name);
-    result.error = fill_unlit(std::move(grid), run);
-  }
-  result.seconds["resample"] = watch.seconds();
+  result.seconds["resample"] += watch.seconds();
+}
+
+void make_error(const Volume& volume, SampleSet samples, const Resampler& resampler, const Lattice& texels,
+                const BakeSettings& settings, const Run& run, BakeResult& result) {
+  result.noise = standard_error(samples.variance);
+  result.rmse_estimate = std::hypot(result.noise, result.reading_error);
+  if (!settings.wants_error_grid) return;
+  const Stopwatch watch;
+  // Reading is wrong where rays hit, which is also where their number varies.
+  const double scale = result.noise > 0.0 ? result.rmse_estimate / result.noise : 1.0;
+  const SampleSet errors = standard_errors(std::move(samples), scale);
+  // Of other texels it is the mean error around: what is fitted may well be below 0.
+  ResampledGrid grid = are_sites_own(resampler, settings)
+                           ? resampler.resample(volume, errors, texels, run)
+                           : resamplers().create("cell_grid")->resample(volume, errors, texels, run);
+  require_resampled(grid, texels, 1, settings.resampler.name);
+  result.error = fill_unlit(std::move(grid), run);
+  result.seconds["resample"] += watch.seconds();
+}
+
+void finish_bake(const Volume& volume, SampleSet samples, const Resampler& resampler, const Lattice& texels,
+                 const BakeSettings& settings, const Run& run, BakeResult& result) {
+  make_light(volume, samples, resampler, texels, settings, run, result);
+  make_error(volume, std::move(samples), resampler, texels, settings, run, result);
 }
 
 }  // namespace isolux

@@ -64,7 +64,13 @@ void keep_first(std::size_t count, SampleSet& samples);
 void finish_light(const Volume& volume, const SampleSet& samples, ResampledGrid partial, const Resampler& resampler,
                   const BakeSettings& settings, const Run& run, BakeResult& result);
 
-/// The samples as a grid, with their error.
+/// The samples as a grid.
+void make_light(const Volume& volume, const SampleSet& samples, const Resampler& resampler, const Lattice& texels,
+                const BakeSettings& settings, const Run& run, BakeResult& result);
+/// Their error, and if it is wanted as a grid.
+void make_error(const Volume& volume, SampleSet samples, const Resampler& resampler, const Lattice& texels,
+                const BakeSettings& settings, const Run& run, BakeResult& result);
+/// Both.
 void finish_bake(const Volume& volume, SampleSet samples, const Resampler& resampler, const Lattice& texels,
                  const BakeSettings& settings, const Run& run, BakeResult& result);
 

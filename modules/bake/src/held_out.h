@@ -15,8 +15,9 @@ namespace isolux {
 
 /// Places whose light is traced to judge what was found there otherwise and never used for it: traced twice by paths,
 /// with other random numbers. Paths have no bias, so the mean product of both differences is the mean squared error
-/// whatever is wrong with the light, be it how reflections were read. Places of which paths were cut off
-/// (TraceResult::cut) are left out.
+/// whatever is wrong with the light, be it how reflections were read. What paths that were cut off (TraceResult::cut)
+/// would still have brought is known to lie in a range, where the environment alone shines, and light within it counts
+/// as right; places of which that is much, or not known, are left out.
 class HeldOut {
  public:
   /// Of the light to judge, site i is number `numbers[i]`. \throw Cancelled
@@ -30,16 +31,22 @@ class HeldOut {
   /// Of light with the scene's channels.
   [[nodiscard]] SquaredError squared_error(std::span<const float> light) const;
   [[nodiscard]] std::span<const std::size_t> numbers() const { return numbers_; }
+  [[nodiscard]] std::size_t left_out() const { return left_out_; }
   [[nodiscard]] const TraceCounters& counters() const { return counters_; }
 
  private:
-  /// Places of which paths were cut off: nobody knows their light.
-  void leave_out_unknown(const std::vector<std::uint8_t>& is_known);
+  /// Places whose paths say too little.
+  void leave_out(const std::vector<std::uint8_t>& is_known);
 
   std::vector<std::size_t> numbers_;
   std::array<std::vector<float>, 2> light_;
+  std::array<std::vector<float>, 2> beyond_;  ///< of each place, by what cut paths may have missed light; empty: none
+  std::size_t left_out_ = 0;
   TraceCounters counters_;
 };
+
+/// Counts what judging took, and the places that it had to leave out.
+void count_judging(const HeldOut& held_out, BakeResult& result);
 
 /// Texels to hold out, drawn at random, all that can be lit being equally likely: at most so many, or one of `one_of`.
 /// \throw Cancelled

@@ -15,18 +15,15 @@
 #include <variant>
 
 #include "bake_parts.h"
-#include "ray_budget.h"
 #include "reading_error.h"
 #include "resampling_choice.h"
 #include "standard_error.h"
-#include "texel_judge.h"
 #include "texel_places.h"
+#include "texel_rounds.h"
 
 namespace isolux {
 namespace {
 
-/// Rounds of doubling: more than the 2^20 rays that a site may have need.
-constexpr int kMostRounds = 24;
 /// Sites a texel that reflections are iterated over; the others gather the light found.
 constexpr double kSitesEnough = 2.0;
 /// Rays of a site at a texel whose ends they are iterated over.
@@ -37,14 +34,6 @@ constexpr float kPocketAlbedo = 0.98f;
 constexpr float kEndlessAlbedo = 0.9999f;
 /// Sites whose places are made again at once.
 constexpr std::size_t kSamplesAPart = std::size_t(1) << 18;
-
-/// Those whose rays say anything: that have a normal.
-std::vector<std::uint32_t> all_that_are_lit(std::span<const float> variances) {
-  std::vector<std::uint32_t> sites;
-  for (std::size_t i = 0; i < variances.size(); ++i)
-    if (variances[i] < kUnknownVariance) sites.push_back(std::uint32_t(i));
-  return sites;
-}
 
 Sites first_of(const Sites& sites, std::size_t count) {
   const auto last = std::ptrdiff_t(std::min(count, sites.size()));
@@ -62,11 +51,9 @@ Lattice at_least_one_a_cell(const Lattice& texels, const Lattice& volume) {
 
 bool parts_pockets(const Scene& scene) {
   const float albedo = largest_albedo(scene);
-  const bool shines = std::any_of(scene.emission.keys.begin(), scene.emission.keys.end(),
-                                  [](const auto& key) { return key.colour != Vec3f(0.0f); });
   const bool has_near_lamps = std::any_of(scene.lights.begin(), scene.lights.end(),
                                           [](const Light& light) { return !std::holds_alternative<SunLight>(light); });
-  return albedo > kPocketAlbedo && (albedo < kEndlessAlbedo || !(shines || has_near_lamps));
+  return albedo > kPocketAlbedo && (albedo < kEndlessAlbedo || !(has_emission(scene) || has_near_lamps));
 }
 
 }  // namespace
@@ -139,32 +126,6 @@ Solution KeptRays::solve(const Scene& scene, const Run& run, BakeResult& result)
   return solution;
 }
 
-std::vector<std::uint32_t> KeptRays::wanting(const Solution& solution, double solve_seconds) const {
-  RayBudget budget;
-  const auto traced = links_->rays();
-  const bool begins = *std::max_element(traced.begin(), traced.end()) < std::uint32_t(kFirstRays);
-  const double error = standard_error(solution.samples.variance);
-  if (settings_.target_rmse > 0.0 && !begins) {
-    const double noise = squared_noise_for(settings_.target_rmse, reading_error(solution.samples));
-    if (!(error * error > noise)) return {};
-    // A little below, lest a last round serves a few sites.
-    budget.mean_variance = 0.95 * noise;
-  }
-  if (settings_.target_seconds > 0.0) {
-    // The time of solving grows with the rays, which may double.
-    const double left = settings_.target_seconds - since_.seconds() - 2.0 * solve_seconds;
-    budget.rays = left * double(rays()) / std::max(trace_seconds_, 1e-9);
-    if (budget.rays < 0.02 * double(rays())) return {};
-  }
-  if (settings_.trace.bounces != 0) {
-    const double room = double(most_kept_rays(settings_)) - double(rays());
-    if (room < 0.02 * double(rays())) return {};
-    budget.rays = std::min(budget.rays, room);
-  }
-  if (begins && budget.rays >= double(rays())) return all_that_are_lit(solution.samples.variance);
-  return sites_to_double(solution.samples.variance, links_->rays(), budget);
-}
-
 BakeResult KeptRays::light(const Scene& scene, const Run& run) {
   require_kept();
   BakeResult result = std::exchange(begun_, {});
@@ -172,19 +133,6 @@ BakeResult KeptRays::light(const Scene& scene, const Run& run) {
   samples.sites = links_->sites();
   finish_bake(volume_, std::move(samples), *resampler_, texels_, settings_, run, result);
   return result;
-}
-
-double KeptRays::reading_error(const SampleSet& samples) const { return judge_ == nullptr ? 0.0 : judge_->of(samples); }
-
-BakeSettings KeptRays::settings_to_judge() const {
-  // Paths of places are some eight rays: an eighth of the time's, at the pace of the first rays, then goes into them.
-  constexpr double kShare = 1.0 / 64.0;
-  BakeSettings settings = settings_;
-  if (!(settings.target_seconds > 0.0)) return settings;
-  const double of_each = first_rays(settings) * settings.target_seconds / std::max(trace_seconds_, 1e-9);
-  settings.trace.rays = int(std::clamp(kShare * of_each, 1.0, 4096.0));
-  settings.target_rmse = 0.0;
-  return settings;
 }
 
 BakeResult KeptRays::last_light(const Scene& scene, const Run& run) && {
@@ -196,16 +144,32 @@ BakeResult KeptRays::last_light(const Scene& scene, const Run& run) && {
     judge_ = std::make_unique<const ReadingError>(volume_, scene, links_->sites(), judging, run);
     judge_seconds_ = watch.seconds();
   }
+  if (settings_.target_rmse > 0.0 && !are_sites_own(*resampler_, settings_)) {
+    const Stopwatch watch;
+    texel_rounds_ = std::make_unique<TexelRounds>(
+        TexelRounds{.judge = TexelJudge(volume_, scene, judging, links_->sites().size(), run),
+                    .target = TexelTarget(settings_.target_rmse)});
+    judge_seconds_ += watch.seconds();
+  }
   if (can_do_without_places(scene)) {
     const auto places = TexelPlaces::of(volume_.lattice(), texels_, links_->sites().positions);
     if (places) return light_without_places(scene, *places, run);
   }
   BakeResult result = std::exchange(begun_, {});
   SampleSet samples = trace_and_solve(scene, run, result);
-  samples.sites = std::move(*links_).take_sites();
+  samples.sites = links_->take_sites();
   finish_links();
+  if (texel_rounds_ != nullptr && texel_rounds_->is_lit) {
+    make_error(volume_, std::move(samples), *resampler_, texels_, settings_, run, result);
+    tell_error(texel_rounds_->error, result);
+    return result;
+  }
   finish_bake(volume_, std::move(samples), *resampler_, texels_, settings_, run, result);
-  if (!are_sites_own(*resampler_, settings_)) judge_texels(volume_, scene, judging, run, result);
+  if (texel_rounds_ != nullptr) {
+    tell_error(texel_rounds_->judge.squared_error(result.light, run), result);
+  } else if (!are_sites_own(*resampler_, settings_)) {
+    judge_texels(volume_, scene, judging, run, result);
+  }
   return result;
 }
 
@@ -252,39 +216,6 @@ void KeptRays::finish_links() {
   means_.reset();
   release(last_);
   return_freed_memory();
-}
-
-SampleSet KeptRays::trace_and_solve(const Scene& scene, const Run& run, BakeResult& result) {
-  Stopwatch solving;
-  Solution solution = solve(scene, run, result);
-  for (int round = 0; has_target(settings_) && round < kMostRounds; ++round) {
-    const std::vector<std::uint32_t> sites = wanting(solution, solving.seconds());
-    if (sites.empty()) break;
-    const Stopwatch watch;
-    links_->extend(sites, run);
-    trace_seconds_ += watch.seconds();
-    solving = Stopwatch();
-    solution = solve(scene, run, result);
-  }
-  result.seconds["trace"] = trace_seconds_ + judge_seconds_;
-  result.counters = links_->counters();
-  add(result.counters, solution.counters);
-  if (judge_ != nullptr) add(result.counters, judge_->counters());
-  result.reading_error = reading_error(solution.samples);
-  if (settings_.trace.bounces == kAllBounces && solution.sweeps >= SolveSettings{}.most_sweeps)
-    result.skipped["sweeps_beyond_limit"] = 1;
-  result.settings = settings_;
-  result.least_rays = result.most_rays = std::uint32_t(settings_.trace.rays);
-  if (const auto rays = links_->rays(); !rays.empty()) {
-    const auto [least, most] = std::minmax_element(rays.begin(), rays.end());
-    result.least_rays = *least;
-    result.most_rays = *most;
-  }
-  result.link_bytes = links_->bytes();
-  const bool missed = settings_.target_rmse > 0.0 && standard_error(solution.samples.variance) > settings_.target_rmse;
-  if (settings_.trace.bounces != 0 && missed && !(settings_.target_seconds > 0.0))
-    result.skipped["rounds_beyond_memory"] = 1;
-  return std::move(solution.samples);
 }
 
 }  // namespace isolux

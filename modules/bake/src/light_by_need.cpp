@@ -79,7 +79,7 @@ class ByNeed {
       if (!take_steps(found)) break;
     }
     result.seconds["trace"] = watch.seconds() - result.seconds["bounces"];
-    add(result.counters, held_out.counters());
+    count_judging(held_out, result);
     finish(result);
     return result;
   }

@@ -17,7 +17,7 @@ class ReadingError {
   /// rms error of e at the sites that their variances leave unexplained, at least what may hide in the noise of the
   /// paths.
   [[nodiscard]] double of(const SampleSet& samples) const;
-  [[nodiscard]] const TraceCounters& counters() const { return held_out_.counters(); }
+  [[nodiscard]] const HeldOut& held_out() const { return held_out_; }
 
  private:
   HeldOut held_out_;

@@ -137,6 +137,21 @@ float largest_albedo(const Scene& scene) {
   return most;
 }
 
+bool has_emission(const Scene& scene) {
+  return std::any_of(scene.emission.keys.begin(), scene.emission.keys.end(),
+                     [](const auto& key) { return key.colour != Vec3f(0.0f); });
+}
+
+float largest_radiance(const Environment& environment) {
+  const auto largest = [](const Vec3f& c) { return std::max({c.x, c.y, c.z}); };
+  if (const auto* uniform = std::get_if<UniformEnvironment>(&environment)) return largest(uniform->radiance);
+  if (const auto* sky = std::get_if<SkyEnvironment>(&environment))
+    return std::max({largest(sky->zenith), largest(sky->horizon), largest(sky->ground)});
+  float most = 0.0f;
+  for (const Vec3f& pixel : std::get<ImageEnvironment>(environment).pixels) most = std::max(most, largest(pixel));
+  return most;
+}
+
 Scene scene_of_side(Scene scene, LevelSetSide side) {
   scene.sides = LitSides::kOuter;
   if (side == LevelSetSide::kInner) scene.outer = opposite(scene.outer);

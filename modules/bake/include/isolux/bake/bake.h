@@ -108,8 +108,11 @@ struct BakeResult {
   /// sites_outside_iso_range, texels_predicted. And links_beyond_memory, rays that were not kept
   /// (BakeSettings::most_link_bytes); rounds_beyond_memory, 1 where target_rmse was not reached for that;
   /// reading_beyond_error, 1 where reflections were followed by paths to reach it (kIteratedOrPaths);
-  /// sweeps_beyond_limit, 1 where iterated reflections had not settled when they ended; paths_cut, paths that were cut
-  /// off (TraceCounters::cut), so that the light misses what they would have met.
+  /// error_beyond_rays, 1 where what more rays could take away is too little to reach it;
+  /// sweeps_beyond_limit, 1 where iterated reflections had not settled when they ended; places_unjudged, of the places
+  /// that an error is judged by, those in pockets whose light nobody knows, so that what is wrong there is not in
+  /// rmse_estimate; paths_cut, paths that were cut off (TraceCounters::cut), so that the light misses what they would
+  /// have met.
   std::map<std::string, std::uint64_t> skipped;
   double seconds_beyond_time = 0.0;       ///< beyond target_seconds, where it was exceeded by more than a quarter
   std::map<std::string, double> seconds;  ///< by stage: sites, trace, bounces (of kIterated), resample

@@ -14,6 +14,7 @@ namespace isolux {
 
 class ReadingError;
 class TexelPlaces;
+struct TexelRounds;
 
 /// A bake whose rays are kept: what bake() uses for BounceMethod::kIterated, and a way to light the same volume again
 /// after albedo, emission or environment changed, without tracing it again. Not for use from several threads at once.
@@ -64,8 +65,13 @@ class KeptRays {
   void finish_links();
   /// The light that reflections read.
   [[nodiscard]] IlluminationGrid between_reflections(const SampleSet& samples, const Run& run);
+  /// Whether all sites have the rays from which errors are believed.
+  [[nodiscard]] bool has_begun() const;
+  /// The squared noise of the sites from which on more rays are not worth it towards settings.target_rmse; 0 without.
+  /// Where texels are made of several sites it makes them in `result` and judges them.
+  [[nodiscard]] double noise_worth_rays(SampleSet& samples, const Run& run, BakeResult& result);
   /// The sites that should get more rays; none if it is enough.
-  [[nodiscard]] std::vector<std::uint32_t> wanting(const Solution& solution, double solve_seconds) const;
+  [[nodiscard]] std::vector<std::uint32_t> wanting(const SampleSet& samples, double noise, double solve_seconds) const;
   /// By which places and paths are chosen. In a time they are what it has room for.
   [[nodiscard]] BakeSettings settings_to_judge() const;
   /// BakeResult::reading_error, as far as it is judged.
@@ -86,6 +92,7 @@ class KeptRays {
   double judge_seconds_ = 0.0;
   std::vector<float> last_;  ///< e of the last solution
   std::unique_ptr<const ReadingError> judge_;
+  std::unique_ptr<TexelRounds> texel_rounds_;  ///< where texels are made of several sites, towards an error
 };
 
 }  // namespace isolux

@@ -106,8 +106,9 @@ class LightLinks {
 
   /// Without positions and normals once these were let go.
   [[nodiscard]] const Sites& sites() const { return sites_; }
-  /// The sites, where nothing else is wanted of the links any more.
-  [[nodiscard]] Sites take_sites() && { return std::move(sites_); }
+  /// The sites, to be given back before any other call but the destructor.
+  [[nodiscard]] Sites take_sites() { return std::move(sites_); }
+  void give_back(Sites sites) { sites_ = std::move(sites); }
   /// Whether light can be found without the sites' positions and normals: they sit at the texels, have normals, and all
   /// their rays are kept, of interleaved nets.
   [[nodiscard]] bool can_let_places_go() const;

@@ -94,6 +94,12 @@ struct Scene {
 /// Of all isovalues and channels.
 [[nodiscard]] float largest_albedo(const Scene& scene);
 
+/// Whether level sets shine by themselves.
+[[nodiscard]] bool has_emission(const Scene& scene);
+
+/// Of all directions and channels.
+[[nodiscard]] float largest_radiance(const Environment& environment);
+
 /// Whether light is aimed at: light sources, or parts of an image that are many times brighter than the rest. \throw
 /// InvalidInput for images without pixels
 [[nodiscard]] bool has_lamps(const Scene& scene);
