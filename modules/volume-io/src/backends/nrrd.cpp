@@ -8,19 +8,72 @@
 #include <isolux/volume_io/volume_reader.h>
 
 #include <algorithm>
+#include <array>
 
 namespace isolux {
 namespace {
 
-// Which axes are space: axes of one sample are dropped until three are left, those that the header calls no domain
-// first.
+// Of NRRD's kinds those along which no places lie; of matrices and tensors there are many. By their synonyms, too.
+bool is_of_values(std::string_view kind) {
+  static constexpr std::array<std::string_view, 29> kKinds = {"list",
+                                                              "point",
+                                                              "vector",
+                                                              "contravariant-vector",
+                                                              "covariant-vector",
+                                                              "normal",
+                                                              "stub",
+                                                              "scalar",
+                                                              "complex",
+                                                              "2-vector",
+                                                              "3-vector",
+                                                              "4-vector",
+                                                              "3-color",
+                                                              "4-color",
+                                                              "rgb-color",
+                                                              "rgbcolor",
+                                                              "rgb",
+                                                              "rgba-color",
+                                                              "rgbacolor",
+                                                              "rgba",
+                                                              "hsv-color",
+                                                              "hsvcolor",
+                                                              "hsv",
+                                                              "xyz-color",
+                                                              "xyzcolor",
+                                                              "xyz",
+                                                              "3-gradient",
+                                                              "3-normal",
+                                                              "quaternion"};
+  return std::find(kKinds.begin(), kKinds.end(), kind) != kKinds.end() || kind.ends_with("-matrix") ||
+         kind.ends_with("-tensor");
+}
+bool is_of_time(const detail::NrrdAxis& axis) { return axis.kind == "time"; }
+
+// Axes of several samples that are none of space would be taken for it.
+void require_space(const detail::NrrdHeader& header) {
+  const auto is_space = [](const detail::NrrdAxis& axis) { return !is_of_values(axis.kind) && !is_of_time(axis); };
+  const bool is_series = std::count_if(header.axes.begin(), header.axes.end(), is_space) >= 3;
+  for (std::size_t a = 0; a < header.axes.size(); ++a) {
+    const detail::NrrdAxis& axis = header.axes[a];
+    if (axis.size <= 1 || is_space(axis) || (is_of_time(axis) && !is_series)) continue;
+    throw InvalidInput(
+        fmt::format("{}: axis {} of {} has {} samples of the kind '{}': a volume has 3 axes of space (of the kinds "
+                    "domain and space, or of none), one number a voxel; others may have 1 sample only",
+                    header.path, a + 1, header.axes.size(), axis.size, axis.kind));
+  }
+}
+
+// Which axes are space: axes of one sample are dropped until three are left, those that the header calls something
+// else or no domain first.
 std::vector<detail::NrrdAxis> spatial_axes(const detail::NrrdHeader& header) {
+  require_space(header);
   std::vector<detail::NrrdAxis> axes = header.axes;
   const auto drop = [&](auto unwanted) {
     for (auto it = axes.begin(); axes.size() > 3 && it != axes.end();)
       it = it->size == 1 && unwanted(*it) ? axes.erase(it) : it + 1;
   };
   drop([&](const detail::NrrdAxis& axis) { return header.has_directions && !axis.direction; });
+  drop([](const detail::NrrdAxis& axis) { return is_of_values(axis.kind) || is_of_time(axis); });
   drop(
       [](const detail::NrrdAxis& axis) { return axis.kind != "domain" && axis.kind != "space" && axis.kind != "???"; });
   std::reverse(axes.begin(), axes.end());
@@ -52,8 +105,11 @@ class NrrdReader final : public VolumeReader {
     const detail::NrrdHeader header = detail::read_nrrd_header(source, options);
     const auto axes = spatial_axes(header);
     detail::NrrdFrame frame = detail::nrrd_frame(header, axes);
-    return detail::make_volume(source, frame.lattice, detail::read_nrrd_values(header, options, run),
-                               header.layout.type, std::move(frame.space), options);
+    StoredVolume volume = detail::make_volume(source, frame.lattice, detail::read_nrrd_values(header, options, run),
+                                              header.layout.type, std::move(frame.space), options);
+    if (const auto time = std::find_if(axes.begin(), axes.end(), is_of_time); time != axes.end() && time->size > 1)
+      volume.remarks.push_back(fmt::format("{}: its axis of the kind 'time' is taken as one of space", source));
+    return volume;
   }
 
   [[nodiscard]] std::vector<std::string> files(const std::string& source, const ReadOptions& options) const override {
