@@ -86,6 +86,11 @@ std::string unescape(std::string_view value) {
   return text;
 }
 
+bool is_list(std::string_view data_file) {
+  const auto words = nrrd_words(data_file);
+  return !words.empty() && words.front() == "LIST";
+}
+
 void take_line(const std::string& path, const std::string& line, NrrdText& text) {
   // A key may have colons in it, a field's name not.
   if (const auto pair = line.find(":="); pair < line.find(": ")) {
@@ -129,6 +134,9 @@ NrrdText read_nrrd_text(const std::string& path) {
     } else if (line.front() != '#') {
       take_line(path, line, text);
     }
+    // Names of files follow, to the header's end.
+    if (const auto data = text.fields.find("data file"); data != text.fields.end() && is_list(data->second))
+      return text;
     if (c == std::ifstream::traits_type::eof()) return text;
   }
   throw InvalidInput(fmt::format("{}: the header has more than {} lines", path, kMostLines));
@@ -154,9 +162,7 @@ std::vector<std::string> nrrd_words(std::string_view text) {
 }
 
 bool names_several_files(std::string_view field) {
-  const auto words = nrrd_words(field);
-  if (words.empty()) return false;
-  return words.front() == "LIST" || (field.find('%') != std::string_view::npos && words.size() >= 4);
+  return is_list(field) || (field.find('%') != std::string_view::npos && nrrd_words(field).size() >= 4);
 }
 
 bool can_be_data_file(std::string_view name) {

@@ -52,5 +52,14 @@ TEST(NrrdNames, OfPairsMayHaveColons) {
   EXPECT_NE(test::reading_error(folder.write("a.nrrd", header_of(fields + "a: b:=c\n"))), "") << "a field 'a'";
 }
 
+TEST(NrrdNames, OfSeveralDataFilesAreRefusedForWhatTheyAre) {
+  const test::TemporaryFolder folder;
+  const std::string fields = "NRRD0004\ntype: uchar\nencoding: raw\ndimension: 3\nsizes: 3 2 2\ndata file: ";
+  for (const std::string files : {"LIST\ns0.raw\ns1.raw\n", "LIST 2\nC:\\s0.raw\nb: c\n", "LIST", "s%d.raw 0 1 1\n"})
+    EXPECT_THAT(test::reading_error(folder.write("a.nhdr", fields + files)),
+                ::testing::AllOf(::testing::HasSubstr("a.nhdr: 'data file: "), ::testing::HasSubstr("join them first")))
+        << files;
+}
+
 }  // namespace
 }  // namespace isolux
