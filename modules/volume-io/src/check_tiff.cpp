@@ -1,6 +1,7 @@
 #include "files.h"
 #include "format_checks.h"
 #include "header_bytes.h"
+#include "tiff_description.h"
 
 #include <fmt/format.h>
 #include <isolux/core/error.h>
@@ -19,6 +20,7 @@ constexpr std::uint64_t kMostEntries = 4096;
 constexpr int kMostPages = 100000;
 // LZW repeats up to some 3000 bytes a code of 12 bits; deflate stays below.
 constexpr std::uint64_t kLargestRatio = 4096;
+constexpr std::uint64_t kLongestDescription = 1 << 24;
 
 enum Tag : int {
   kSubfileType = 254,
@@ -28,6 +30,7 @@ enum Tag : int {
   kBits = 258,
   kCompression = 259,
   kPhotometric = 262,
+  kDescription = 270,
   kStripOffsets = 273,
   kOrientation = 274,
   kSamples = 277,
@@ -51,6 +54,8 @@ class TiffWalker {
 
   [[nodiscard]] bool at_end() const { return next_ == 0; }
   [[nodiscard]] std::uint64_t file_bytes() const { return size_; }
+  /// The first page's ImageDescription.
+  [[nodiscard]] const std::string& description() const { return description_; }
 
   /// The next page's tags: each with all its numbers.
   std::map<int, std::vector<std::uint64_t>> page() {
@@ -68,6 +73,7 @@ class TiffWalker {
       const std::size_t at = std::size_t(i) * entry_bytes;
       const int tag = entries.get<std::uint16_t>(at);
       if (wanted(tag)) tags[tag] = values(entries, at);
+      if (tag == kDescription && visited_.size() == 1) description_ = text(entries, at);
     }
     const std::size_t end = std::size_t(count) * entry_bytes;
     next_ = big_ ? entries.get<std::uint64_t>(end) : entries.get<std::uint32_t>(end);
@@ -89,12 +95,28 @@ class TiffWalker {
     file_.read(data.data(), std::streamsize(count));
     return {std::move(data), big_endian_};
   }
+  [[nodiscard]] std::uint64_t count_of(const HeaderBytes& entries, std::size_t at) const {
+    return big_ ? entries.get<std::uint64_t>(at + 4) : entries.get<std::uint32_t>(at + 4);
+  }
+  /// Where an entry's values are that do not fit in it.
+  [[nodiscard]] std::uint64_t offset_of(const HeaderBytes& entries, std::size_t at) const {
+    return big_ ? entries.get<std::uint64_t>(at + 12) : entries.get<std::uint32_t>(at + 8);
+  }
+  // Of a description too short to stand elsewhere nothing.
+  std::string text(const HeaderBytes& entries, std::size_t at) {
+    const std::uint64_t count = std::min(count_of(entries, at), kLongestDescription);
+    if (count <= (big_ ? 8 : 4)) return {};
+    const HeaderBytes data = bytes(offset_of(entries, at), count);
+    std::string letters;
+    for (std::size_t i = 0; i < count && data.get<char>(i) != '\0'; ++i) letters += data.get<char>(i);
+    return letters;
+  }
   // The numbers of one entry, which stand in it if they fit and elsewhere if not.
   std::vector<std::uint64_t> values(const HeaderBytes& entries, std::size_t at) {
     static const std::map<int, std::size_t> widths = {{1, 1}, {3, 2}, {4, 4}, {16, 8}};
     const auto width = widths.find(entries.get<std::uint16_t>(at + 2));
     if (width == widths.end()) throw InvalidInput(fmt::format("{}: a TIFF tag of a type that it cannot have", path_));
-    const std::uint64_t count = big_ ? entries.get<std::uint64_t>(at + 4) : entries.get<std::uint32_t>(at + 4);
+    const std::uint64_t count = count_of(entries, at);
     const std::size_t field = at + (big_ ? 12 : 8);
     // All tags together cannot have more values than the file has bytes, unless they share them to waste our time.
     if (count > values_left_)
@@ -102,8 +124,7 @@ class TiffWalker {
     values_left_ -= count;
     const std::uint64_t needed = count * width->second;
     const bool inside = needed <= (big_ ? 8 : 4);
-    const std::uint64_t offset = big_ ? entries.get<std::uint64_t>(field) : entries.get<std::uint32_t>(field);
-    const HeaderBytes data = inside ? entries : bytes(offset, needed);
+    const HeaderBytes data = inside ? entries : bytes(offset_of(entries, at), needed);
     std::vector<std::uint64_t> numbers;
     for (std::uint64_t i = 0; i < count; ++i) {
       const std::size_t place = (inside ? field : 0) + std::size_t(i) * width->second;
@@ -133,6 +154,7 @@ class TiffWalker {
   bool big_ = false;
   std::uint64_t next_ = 0;
   std::set<std::uint64_t> visited_;
+  std::string description_;
 };
 
 using Tags = std::map<int, std::vector<std::uint64_t>>;
@@ -252,6 +274,7 @@ CheckedHeader check_tiff(const std::string& path) {
     checked.type = type;
   }
   if (checked.size.z == 0) throw InvalidInput(fmt::format("{}: a TIFF without a page", path));
+  checked.remark = check_description(path, walker.description(), std::uint64_t(checked.size.z));
   return checked;
 }
 

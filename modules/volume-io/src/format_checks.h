@@ -15,6 +15,7 @@ struct CheckedHeader {
   Index3 size{0};
   std::optional<ScalarType> type;  ///< of the voxels, where the library has to give them in the type that they are in
   std::optional<DataPlace> data;   ///< where we read them better ourselves
+  std::string remark{};            ///< what the user should know of it; empty if nothing
 };
 
 /// Each `is_` tells a format by its content. Each `check_` reads the header on its own and makes sure that the file
@@ -26,7 +27,7 @@ struct CheckedHeader {
 /// The file that holds the data: `path` itself where they are attached. \throw as check_meta_image
 [[nodiscard]] std::string meta_image_data_file(const std::string& path, const ReadOptions& options);
 
-/// The size's z is the number of pages.
+/// The size's z is the number of pages; a remark where they are called something else than sections.
 [[nodiscard]] bool is_tiff(const std::string& path);
 [[nodiscard]] CheckedHeader check_tiff(const std::string& path);
 
@@ -36,6 +37,10 @@ struct CheckedHeader {
 
 /// Files of a folder told by `is`, in the order in which people number them ("s2" before "s10").
 [[nodiscard]] std::vector<std::string> files_in_folder(const std::string& folder, bool (*is)(const std::string&));
+
+/// A remark on the first number that the names of a folder's pages, in the order of their numbers, leave out; empty if
+/// they leave out none, or do not count pages.
+[[nodiscard]] std::string missing_page(const std::string& folder, const std::vector<std::string>& files);
 
 /// \throw InvalidInput unless every number is finite and, for a spacing, not zero
 void require_finite(const std::string& path, std::string_view what, std::span<const double> numbers);

@@ -117,6 +117,14 @@ inline std::string tiff_sample(int first) {
   return bytes + bytes_of<std::uint32_t>({0}) + bytes_of(ramp(6, first));
 }
 
+/// Two samples as the pages of one file: the second moved behind the first.
+inline std::string two_pages(std::string first, std::string second) {
+  const auto tags = [](const std::string& page) { return std::size_t(page[8]); };
+  put<std::uint32_t>(second, 10 + 5 * 12 + 8, std::uint32_t(first.size() + second.size() - 8 - 12));
+  put<std::uint32_t>(first, 10 + tags(first) * 12, std::uint32_t(first.size()));
+  return first + second.substr(8);
+}
+
 /// One element of explicit value representation, its text padded to an even length.
 inline std::string dicom_element(std::uint16_t group, std::uint16_t element, const std::string& kind,
                                  std::string value) {

@@ -6,6 +6,7 @@ namespace isolux {
 namespace {
 using test::Itk;
 using test::kSpaced;
+using test::two_pages;
 using ::testing::HasSubstr;
 
 TEST_F(Itk, ReadsAStackOfTiffsInNumberOrder) {
@@ -52,14 +53,6 @@ std::string tiff_with(std::uint16_t tag, std::uint16_t value, std::string bytes 
   test::put<std::uint16_t>(longer, 8, 10);
   test::put<std::uint32_t>(longer, 10 + 5 * 12 + 8, std::uint32_t(longer.size() - 12));
   return longer;
-}
-
-// Two samples as the pages of one file: the second moved behind the first.
-std::string two_pages(std::string first, std::string second) {
-  const auto tags = [](const std::string& page) { return std::size_t(page[8]); };
-  test::put<std::uint32_t>(second, 10 + 5 * 12 + 8, std::uint32_t(first.size() + second.size() - 8 - 12));
-  test::put<std::uint32_t>(first, 10 + tags(first) * 12, std::uint32_t(first.size()));
-  return first + second.substr(8);
 }
 
 TEST_F(Itk, ReadsThePixelsThatTiffSays) {

@@ -14,6 +14,7 @@
 #include <array>
 #include <chrono>
 #include <cmath>
+#include <iterator>
 
 namespace isolux {
 namespace {
@@ -29,6 +30,7 @@ struct Plan {
   detail::ItkRequest request;
   detail::CheckedHeader checked;
   std::string_view space;
+  std::vector<std::string> remarks{};
 };
 
 Plan tiff_plan(const std::string& source, const std::vector<std::string>& files, const ReadOptions& options) {
@@ -44,7 +46,10 @@ Plan tiff_plan(const std::string& source, const std::vector<std::string>& files,
                                      first.size.x, first.size.y, scalar_type_name(*first.type), first.size.z));
     ++all.size.z;
   }
-  return {{.format = ItkFormat::kTiff, .source = source, .files = files, .size = all.size, .gap = {}}, all, kPlain};
+  return {{.format = ItkFormat::kTiff, .source = source, .files = files, .size = all.size, .gap = {}},
+          all,
+          kPlain,
+          {all.remark, detail::missing_page(source, files)}};
 }
 
 Plan dicom_plan(const std::string& source, const std::vector<std::string>& files, const ReadOptions& options) {
@@ -157,7 +162,10 @@ class ItkReader final : public VolumeReader {
     }
     StoredVolume result = detail::make_volume(source, volume.header.lattice, std::move(volume.values),
                                               volume.header.stored_type, std::string(what.space), options);
-    if (!volume.remark.empty()) result.remarks.push_back(std::move(volume.remark));
+    std::vector<std::string> remarks = what.remarks;
+    remarks.push_back(volume.remark);
+    std::copy_if(remarks.begin(), remarks.end(), std::back_inserter(result.remarks),
+                 [](const std::string& remark) { return !remark.empty(); });
     return result;
   }
 
