@@ -148,6 +148,43 @@ TEST_F(Itk, RefusesDicomThatIsNotGrey) {
   EXPECT_EQ(test::reading_error(folder_.write("a.dcm", dicom_with(4, "MONOCHROME1"))), "");
 }
 
+// GDCM's assertions end the program, or it gives zeros.
+TEST_F(Itk, RefusesDicomPixelsThatGdcmCannotTake) {
+  const auto with = [&](const std::string& photometric, char bits, char stored_bits) {
+    std::string bytes = dicom_with(0x100, std::string{bits, '\0'});
+    const std::string tag = test::bytes_of<std::uint16_t>({0x28, 0x101}) + "US" + test::bytes_of<std::uint16_t>({2});
+    bytes[bytes.find(tag) + tag.size()] = stored_bits;
+    bytes.replace(bytes.find("MONOCHROME2"), 11, photometric);
+    if (bits < 32) return bytes;
+    bytes.resize(bytes.size() + 12, '\0');
+    test::put<std::uint32_t>(bytes, bytes.size() - 28, 24);
+    return bytes;
+  };
+  const std::string one = "MONOCHROME1";
+  const std::string two = "MONOCHROME2";
+  EXPECT_THAT(refused("a.dcm", with(one, 16, 12)),
+              HasSubstr("MONOCHROME1 of pixels of 16 bits of which 12 are stored, with a sign: GDCM"));
+  EXPECT_THAT(refused("a.dcm", with(one, 32, 32)), HasSubstr("MONOCHROME1 of pixels of 32 bits"));
+  EXPECT_THAT(refused("a.dcm", with(two, 32, 20)), HasSubstr("32 bits of which 20 are stored"));
+  EXPECT_THAT(refused("a.dcm", with(one, 8, 7)), HasSubstr("8 bits of which 7 are stored"));
+  for (const std::string& bytes :
+       {with(one, 16, 16), with(one, 16, 13), with(one, 8, 8), with(two, 16, 12), with(two, 8, 8), with(two, 32, 32)})
+    EXPECT_EQ(test::reading_error(folder_.write("a.dcm", bytes)), "");
+}
+
+// GDCM leaves it aside.
+TEST_F(Itk, RefusesDicomWithATableOfWhatValuesStandFor) {
+  const std::string item = test::bytes_of<std::uint16_t>({0xFFFE, 0xE000, 0, 0});
+  const auto with = [&](const std::string& items) {
+    const std::string head = test::bytes_of<std::uint16_t>({0x28, 0x3000}) + "SQ" + std::string(2, '\0');
+    std::string bytes = test::dicom_sample({});
+    return bytes.insert(bytes.rfind(test::bytes_of<std::uint16_t>({0x7FE0, 0x10})),
+                        head + test::bytes_of<std::uint32_t>({std::uint32_t(items.size())}) + items);
+  };
+  EXPECT_THAT(refused("a.dcm", with(item)), HasSubstr("a ModalityLUTSequence"));
+  EXPECT_EQ(test::reading_error(folder_.write("a.dcm", with(""))), "");
+}
+
 // GDCM takes them for the world's axes.
 TEST_F(Itk, RefusesDicomDirectionsThatAreNotAtRightAngles) {
   for (const std::string text :
