@@ -12,6 +12,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <map>
 #include <optional>
 
@@ -95,12 +96,15 @@ ScalarType scalar_type(const std::string& path, const std::string& type) {
   return it->second;
 }
 
-// The lines between DATASET and SCALARS, in any order; returns those of SCALARS.
+// VTK writes all scalars of unsigned chars so.
+constexpr std::string_view kColours = "color_scalars";
+
+// The lines between DATASET and SCALARS, in any order; returns that of SCALARS.
 std::vector<std::string> read_lattice(const std::string& path, VtkHeader& header, Lattice& lattice) {
   std::optional<std::array<std::int64_t, 3>> sizes;
   std::optional<double> points;
   auto words = header.line();
-  for (; words.front() != "scalars"; words = header.line()) {
+  for (; words.front() != "scalars" && words.front() != kColours; words = header.line()) {
     if (words.front() == "dimensions") {
       sizes = header.sizes(words);
     } else if (words.front() == "spacing" || words.front() == "aspect_ratio") {
@@ -147,11 +151,44 @@ std::string attribute_of(const std::vector<std::string>& words) {
   return at + 1 == words.end() ? excerpt(*at) : excerpt(*at + " " + *(at + 1));
 }
 
+// The bytes that fractions of 255 stand for, rounded as VTK does.
+class Fractions final : public ByteSource {
+ public:
+  Fractions(NumberText& text, const std::string& path, std::uint64_t count) : text_(text), path_(path), count_(count) {}
+
+  std::size_t read(std::span<std::byte> into) override {
+    for (std::byte& byte : into) {
+      const std::string& word = text_.next();
+      if (word.empty()) throw IoError(fmt::format("{}: {} numbers of data expected, {} found", path_, count_, done_));
+      const auto value = parse_real(word);
+      if (!value || !(*value >= 0.0 && *value <= 1.0))
+        throw InvalidInput(fmt::format("{}: '{}', value {} of the data, is no number from 0 to 1 as COLOR_SCALARS are",
+                                       path_, excerpt(word), done_));
+      byte = std::byte(std::lround(255.0 * *value));
+      ++done_;
+    }
+    return into.size();
+  }
+
+ private:
+  NumberText& text_;
+  std::string path_;
+  std::uint64_t count_;
+  std::uint64_t done_ = 0;
+};
+
+DecodedValues read_fractions(NumberText& text, const LegacyVtk& header, const ReadOptions& options, const Run& run) {
+  const std::uint64_t count = header.lattice.count();
+  Fractions bytes(text, header.data.file, count);
+  return decode_scalars(bytes, header.data.layout, count, options, header.data.file, run);
+}
+
 VtkValues read_text(const LegacyVtk& header, const ReadOptions& options, const Run& run) {
   const std::uint64_t count = header.lattice.count();
   const std::string& path = header.data.file;
   NumberText text(path, header.data.offset, kTextBlanks);
-  DecodedValues values = read_text_values(text, header.data.layout.type, count, options, path, run);
+  DecodedValues values = header.colours ? read_fractions(text, header, options, run)
+                                        : read_text_values(text, header.data.layout.type, count, options, path, run);
   const std::vector<std::string> behind = words_at(path, text.offset());
   if (!behind.empty() && parse_real(behind.front()))
     throw IoError(
@@ -179,13 +216,17 @@ LegacyVtk read_legacy_vtk_header(const std::string& path) {
   LegacyVtk result;
   result.text = encoding == "ascii";
   const auto scalars = read_lattice(path, header, result.lattice);
+  result.colours = scalars.front() == kColours;
+  if (result.colours && (scalars.size() != 3 || scalars[2] != "1"))
+    throw InvalidInput(fmt::format("{}: VTK COLOR_SCALARS of {} components: a volume has one", path,
+                                   excerpt(scalars.size() == 3 ? scalars[2] : "no number of")));
   if (scalars.size() < 3 || scalars.size() > 4 || (scalars.size() == 4 && scalars[3] != "1"))
     throw InvalidInput(fmt::format("{}: VTK SCALARS need a name, a type and one component", path));
   result.name = excerpt(scalars[1]);
-  if (header.line().front() != "lookup_table")
+  if (!result.colours && header.line().front() != "lookup_table")
     throw InvalidInput(fmt::format("{}: VTK SCALARS without a LOOKUP_TABLE line", path));
-  result.data = {
-      .file = path, .offset = header.end(), .more_allowed = true, .layout = {scalar_type(path, scalars[2]), true}};
+  const ScalarType type = result.colours ? ScalarType::kUint8 : scalar_type(path, scalars[2]);
+  result.data = {.file = path, .offset = header.end(), .more_allowed = true, .layout = {type, true}};
   const std::uint64_t count = result.lattice.count();
   if (!result.text) require_room(result.data, count);
   if (result.text && count > file_size)

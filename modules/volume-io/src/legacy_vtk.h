@@ -8,13 +8,14 @@
 
 namespace isolux::detail {
 
-/// The header of a legacy VTK file of structured points whose first attribute is one-component scalars, understood and
-/// checked.
+/// The header of a legacy VTK file of structured points whose first attribute is one-component scalars, colours among
+/// them, understood and checked.
 struct LegacyVtk {
   Lattice lattice;
   DataPlace data;
-  bool text = false;  ///< the values are written as numbers with blanks between
-  std::string name;   ///< of the scalars, in lower case
+  bool text = false;     ///< the values are written as numbers with blanks between
+  bool colours = false;  ///< of COLOR_SCALARS, which as text are fractions of 255
+  std::string name;      ///< of the scalars, in lower case
 };
 
 struct VtkValues {
