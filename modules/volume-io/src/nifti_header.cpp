@@ -109,32 +109,40 @@ Fields fields(const HeaderBytes& h, bool second) {
   return f;
 }
 
-IndexToWorld sform_frame(const std::string& path, const Fields& f) {
-  require_finite(path, "the sform", f.sform);
+IndexToWorld sform_frame(const Fields& f) {
   IndexToWorld frame;
-  for (int a = 0; a < 3; ++a) {
-    const std::size_t column = std::size_t(a);
-    frame.axes[a] = Vec3(f.sform[column], f.sform[4 + column], f.sform[8 + column]);
-    const double stretch = glm::length(frame.axes[a]) / std::fabs(f.pixdim[column + 1]);
-    if (!(stretch > 1.0 / kMostStretch && stretch < kMostStretch))
-      throw InvalidInput(
-          fmt::format("{}: the sform's axis {} is {:.4g} long, pixdim says {:.4g}: they may differ by a "
-                      "factor of {} at most",
-                      path, a, glm::length(frame.axes[a]), f.pixdim[column + 1], kMostStretch));
-  }
+  for (std::size_t a = 0; a < 3; ++a) frame.axes[int(a)] = Vec3(f.sform.at(a), f.sform.at(4 + a), f.sform.at(8 + a));
   frame.origin = Vec3(f.sform[3], f.sform[7], f.sform[11]);
   return frame;
 }
 
-// The rotation by the unit quaternion a + ib + jc + kd, of which a >= 0 is left out (nifti1.h, method 2).
-IndexToWorld qform_frame(const std::string& path, const Fields& f) {
+void require_sform(const std::string& path, const Fields& f) {
+  require_finite(path, "the sform", f.sform);
+  const IndexToWorld frame = sform_frame(f);
+  for (int a = 0; a < 3; ++a) {
+    const double pixdim = f.pixdim[std::size_t(a) + 1];
+    const double stretch = glm::length(frame.axes[a]) / std::fabs(pixdim);
+    if (!(stretch > 1.0 / kMostStretch && stretch < kMostStretch))
+      throw InvalidInput(
+          fmt::format("{}: the sform's axis {} is {:.4g} long, pixdim says {:.4g}: they may differ by a "
+                      "factor of {} at most",
+                      path, a, glm::length(frame.axes[a]), pixdim, kMostStretch));
+  }
+}
+
+void require_qform(const std::string& path, const Fields& f) {
   require_finite(path, "the qform", f.qform);
-  Vec3 v(f.qform[0], f.qform[1], f.qform[2]);
-  const double squares = glm::dot(v, v);
+  const Vec3 v(f.qform[0], f.qform[1], f.qform[2]);
   // Half a turn leaves no a; rounding may leave a little less than none.
-  if (squares > 1.0 + 1e-3)
+  if (glm::dot(v, v) > 1.0 + 1e-3)
     throw InvalidInput(
         fmt::format("{}: the qform's quaternion {} {} {}: the sum of squares may be 1 at most", path, v.x, v.y, v.z));
+}
+
+// The rotation by the unit quaternion a + ib + jc + kd, of which a >= 0 is left out (nifti1.h, method 2).
+IndexToWorld qform_frame(const Fields& f) {
+  Vec3 v(f.qform[0], f.qform[1], f.qform[2]);
+  const double squares = glm::dot(v, v);
   if (squares > 1.0) v /= std::sqrt(squares);
   const double a = std::sqrt(std::max(0.0, 1.0 - squares));
   const double aa = a * a;
@@ -174,13 +182,39 @@ void fill_spacing(const std::array<std::int64_t, 3>& sizes, Fields& f) {
     if (double& spacing = f.pixdim.at(a + 1); sizes.at(a) == 1 && spacing == 0.0) spacing = 1.0;
 }
 
+bool by_sform(const Fields& f) { return f.sform_code == 1 || (f.sform_code > 0 && f.qform_code <= 0); }
+
+// What both forms say if they are both there and contradict each other.
+std::string contradiction(const std::string& path, const Fields& f, const std::array<std::int64_t, 3>& sizes) {
+  constexpr double kMostApart = 1e-2;  // of a voxel: far above the rounding of floats
+  if (f.sform_code <= 0 || f.qform_code <= 0) return {};
+  const IndexToWorld sform = sform_frame(f);
+  const IndexToWorld qform = qform_frame(f);
+  const double voxel = std::min({std::fabs(f.pixdim[1]), std::fabs(f.pixdim[2]), std::fabs(f.pixdim[3])});
+  double apart = 0.0;
+  for (unsigned corner = 0; corner < 8; ++corner) {
+    Vec3 index(0);
+    for (unsigned a = 0; a < 3; ++a)
+      if ((corner >> a & 1u) != 0) index[int(a)] = double(sizes.at(a) - 1);
+    const double distance = glm::distance(sform.world(index), qform.world(index)) / voxel;
+    apart = std::max(apart, std::isfinite(distance) ? distance : HUGE_VAL);
+  }
+  if (apart <= kMostApart) return {};
+  return fmt::format(
+      "{}: its sform (code {}) and its qform (code {}) place a corner {:.3g} voxels apart: the {} is used, as ITK and "
+      "3D Slicer do",
+      path, f.sform_code, f.qform_code, apart, by_sform(f) ? "sform" : "qform");
+}
+
 IndexToWorld frame_of(const std::string& path, const Fields& f) {
   require_spacing(path, std::span(f.pixdim).subspan(1));
   IndexToWorld frame;
-  if (f.sform_code == 1 || (f.sform_code > 0 && f.qform_code <= 0)) {
-    frame = sform_frame(path, f);
+  if (by_sform(f)) {
+    require_sform(path, f);
+    frame = sform_frame(f);
   } else if (f.qform_code > 0) {
-    frame = qform_frame(path, f);
+    require_qform(path, f);
+    frame = qform_frame(f);
   } else {
     for (int a = 0; a < 3; ++a) frame.axes[a][a] = std::fabs(f.pixdim[std::size_t(a) + 1]);
   }
@@ -242,6 +276,7 @@ NiftiHeader read_nifti_header(const std::string& path) {
     throw InvalidInput(fmt::format("{}: NIfTI bitpix is {}, datatype {} has {}", path, f.bits, f.datatype, 8 * width));
   NiftiHeader header;
   header.lattice.frame = frame_of(path, f);
+  header.remark = contradiction(path, f, sizes);
   header.data = {.file = path, .compressed = is_gzip(path), .more_allowed = true, .layout = {type, found->big_endian}};
   (header.data.compressed ? header.data.skipped : header.data.offset) = data_offset(path, f, found->second);
   // A slope of 0 or of no number says that there is no scaling, whatever the intercept.

@@ -12,6 +12,7 @@ namespace isolux::detail {
 struct NiftiHeader {
   Lattice lattice;  ///< LPS, millimetres
   DataPlace data;
+  std::string remark;  ///< where sform and qform contradict each other; else empty
 };
 
 /// Tells NIfTI by its content, also the header of a .hdr/.img pair, which is not read.

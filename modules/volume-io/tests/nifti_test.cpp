@@ -184,6 +184,26 @@ TEST_F(Nifti, LiesWhereItkAndSlicerSee) {
   EXPECT_EQ(frame(0, 0).origin, Vec3(0));
 }
 
+TEST_F(Nifti, SaysWhereItsFormsContradictEachOther) {
+  const auto remarks = [&](const std::string& bytes) { return read_volume(folder_.write("a.nii", bytes)).remarks; };
+  EXPECT_THAT(remarks(with_codes(1, 4)), ::testing::ElementsAre(::testing::AllOf(
+                                             HasSubstr("a.nii: its sform (code 1) and its qform (code 4) place"),
+                                             HasSubstr("the sform is used"))));
+  EXPECT_THAT(remarks(with_codes(2, 1)), ::testing::ElementsAre(HasSubstr("the qform is used")));
+  EXPECT_TRUE(remarks(with_codes(0, 1)).empty());
+  EXPECT_TRUE(remarks(with_codes(2, 0)).empty());
+  // The same place, but for a part of the smallest edge, .5.
+  for (const auto& [off, count] : {std::pair(0.0f, 0u), {0.004f, 0u}, {0.006f, 1u}}) {
+    std::string bytes = with_codes(1, 1);
+    const std::array<float, 6> values = {0, 0, 0, -10.0f + off, 20, 30};
+    for (std::size_t i = 0; i < 6; ++i) test::put<float>(bytes, 256 + 4 * i, values.at(i));
+    EXPECT_EQ(remarks(bytes).size(), count) << off;
+  }
+  std::string spoiled = with_codes(2, 1);
+  test::put<float>(spoiled, 280, std::nanf(""));
+  EXPECT_EQ(remarks(spoiled).size(), 1u) << "what is not used may be anything";
+}
+
 TEST_F(Nifti, TurnsByItsQuaternionAndMirrorsByItsQfac) {
   std::string bytes = with_codes(0, 1);
   test::put<float>(bytes, 76, -1.0f);

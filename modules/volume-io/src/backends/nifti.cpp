@@ -24,8 +24,10 @@ class NiftiReader final : public VolumeReader {
                                   const Run& run) const override {
     const detail::NiftiHeader header = detail::read_nifti_header(source);
     auto values = detail::read_values(header.data, header.lattice.count(), options, run);
-    return detail::make_volume(source, header.lattice, std::move(values), detail::voxel_type(header.data),
-                               "left-posterior-superior", options);
+    StoredVolume volume = detail::make_volume(source, header.lattice, std::move(values),
+                                              detail::voxel_type(header.data), "left-posterior-superior", options);
+    if (!header.remark.empty()) volume.remarks.push_back(header.remark);
+    return volume;
   }
 };
 
