@@ -90,10 +90,10 @@ void say_what_was_done(const BakeResult& result, const Session& session) {
 
 /// Of texels made of several sites.
 const char* what_takes_errors_away(const BakeSettings& settings) {
-  if (settings.sampler.name == "texels") return "texels that are not denoised";
-  if (settings.resampler.name == "fit")
-    return "more texels (--texels-a-cell), or the default's one site at each texel,";
-  return "more --samples, or the default's one site at each texel,";
+  if (settings.sampler.name == "texels") return "texels that are not denoised do";
+  if (settings.isovalues) return "light traced at the vertices is exact (extract --exact-light)";
+  if (settings.resampler.name == "fit") return "more texels do (--texels-a-cell)";
+  return "more --samples, or the default's one site at each texel, do";
 }
 
 /// Small volumes and rough light can end above what was asked.
@@ -102,12 +102,14 @@ void say_of_error(const BakeResult& result, double asked, const Session& session
   std::string why;
   const double reading = result.reading_error / result.rmse_estimate;
   if (result.skipped.contains("error_beyond_rays") && reading * reading < 0.5)
-    why = fmt::format("; more rays would hardly take any away: {} do", what_takes_errors_away(result.settings));
+    why = fmt::format("; more rays would hardly take any away, but {}", what_takes_errors_away(result.settings));
   else if (result.reading_error > 0.0)
     why = fmt::format(
-        "; reading reflections from texels makes {:.4f} of it, which more texels or --bounce-method paths "
-        "take away",
+        "; reading reflections from texels is wrong by about {:.4f}, which more texels or --bounce-method paths take "
+        "away",
         result.reading_error);
+  else if (result.noise > 0.0 && result.noise <= kNear * asked)
+    why = "; the noise of its rays is less than asked, and the paths that judge it tell no smaller error";
   session.warn(fmt::format("the error asked is not reached: about {:.4f} of {}{}", result.rmse_estimate, asked, why));
 }
 

@@ -9,6 +9,7 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <utility>
 
 #include "bake_in_parts.h"
@@ -97,9 +98,9 @@ double more_rays_for(double target_rmse, const BakeResult& seen) {
 }
 
 /// The same where texels are made of several sites.
-double more_rays_for(TexelTarget& target, const BakeResult& seen) {
+double more_rays_for(TexelTarget& target, const HeldOut::SquaredError& error, const BakeResult& seen) {
   const double noise = seen.noise * seen.noise;
-  target.add(noise, {.mean = seen.rmse_estimate * seen.rmse_estimate});
+  target.add(noise, error);
   const double wanted = target.wanted_noise();
   return wanted > 0.0 ? kMargin * noise / wanted : 0.0;
 }
@@ -115,8 +116,10 @@ BakeResult bake_towards_target(const Volume& volume, const Scene& scene, const B
   BakeSettings step = settings;
   step.target_rmse = step.target_seconds = 0.0;
   step.trace.rays = first_rays(settings);
-  const bool is_own =
-      are_sites_own(*stages.resamplers.create(settings.resampler.name, settings.resampler.settings), settings);
+  const auto resampler = stages.resamplers.create(settings.resampler.name, settings.resampler.settings);
+  std::optional<TexelJudge> judge;
+  if (settings.target_rmse > 0.0 && !(settings.target_seconds > 0.0) && !are_sites_own(*resampler, settings))
+    judge.emplace(volume, scene, settings, found.sites.size(), run);
   TexelTarget texels(settings.target_rmse);
   for (;;) {
     const double before = watch.seconds();
@@ -126,9 +129,13 @@ BakeResult bake_towards_target(const Volume& volume, const Scene& scene, const B
     double factor = std::numeric_limits<double>::infinity();
     if (settings.target_rmse > 0.0) {
       // Of fewer rays all may miss what is bright.
+      std::optional<HeldOut::SquaredError> error;
+      if (judge) error = judge->squared_error(result.light, run);
+      if (judge) count_judging(judge->held_out(), result);
+      tell_error(error, result);
       double wanted = kMostAStep;
       if (rays >= kFirstRays)
-        wanted = is_own ? more_rays_for(settings.target_rmse, result) : more_rays_for(texels, result);
+        wanted = error ? more_rays_for(texels, *error, result) : more_rays_for(settings.target_rmse, result);
       if (texels.is_beyond_rays()) result.skipped["error_beyond_rays"] = 1;
       if (wanted == 0.0 || wants_paths(settings, result)) return result;
       factor = std::clamp(wanted, kLeastAStep, kMostAStep);

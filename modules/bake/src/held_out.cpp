@@ -138,7 +138,9 @@ HeldOut::SquaredError HeldOut::squared_error(std::span<const float> light) const
 
 void count_judging(const HeldOut& held_out, BakeResult& result) {
   add(result.counters, held_out.counters());
-  if (held_out.left_out() > 0) result.skipped["places_unjudged"] += held_out.left_out();
+  if (held_out.left_out() == 0) return;
+  std::uint64_t& unjudged = result.skipped["places_unjudged"];
+  unjudged = std::max<std::uint64_t>(unjudged, held_out.left_out());  // sites and texels lie in the same pockets
 }
 
 std::vector<std::size_t> one_of_each_share(std::size_t count, std::size_t shares, const Run& run) {

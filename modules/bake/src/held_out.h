@@ -40,7 +40,7 @@ class HeldOut {
 
   std::vector<std::size_t> numbers_;
   std::array<std::vector<float>, 2> light_;
-  std::array<std::vector<float>, 2> beyond_;  ///< of each place, by what cut paths may have missed light; empty: none
+  std::array<std::vector<float>, 2> beyond_;  ///< of each place, by what cut paths may have missed light
   std::size_t left_out_ = 0;
   TraceCounters counters_;
 };

@@ -167,6 +167,7 @@ BakeResult KeptRays::last_light(const Scene& scene, const Run& run) && {
   finish_bake(volume_, std::move(samples), *resampler_, texels_, settings_, run, result);
   if (texel_rounds_ != nullptr) {
     tell_error(texel_rounds_->judge.squared_error(result.light, run), result);
+    if (result.rmse_estimate <= settings_.target_rmse) result.skipped.erase("rounds_beyond_memory");
   } else if (!are_sites_own(*resampler_, settings_)) {
     judge_texels(volume_, scene, judging, run, result);
   }

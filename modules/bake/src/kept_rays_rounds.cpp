@@ -32,6 +32,21 @@ std::vector<std::uint32_t> all_that_are_lit(std::span<const float> variances) {
 
 double squared(double x) { return x * x; }
 
+/// The sites of links as those of their samples, until it ends.
+class LentSites {
+ public:
+  LentSites(LightLinks& links, SampleSet& samples) : links_(links), samples_(samples) {
+    samples_.sites = links_.take_sites();
+  }
+  LentSites(const LentSites&) = delete;
+  LentSites& operator=(const LentSites&) = delete;
+  ~LentSites() { links_.give_back(std::move(samples_.sites)); }
+
+ private:
+  LightLinks& links_;
+  SampleSet& samples_;
+};
+
 }  // namespace
 
 bool KeptRays::has_begun() const {
@@ -43,18 +58,19 @@ double KeptRays::reading_error(const SampleSet& samples) const { return judge_ =
 
 double KeptRays::noise_worth_rays(SampleSet& samples, const Run& run, BakeResult& result) {
   if (!(settings_.target_rmse > 0.0) || !has_begun()) return 0.0;
-  if (texel_rounds_ == nullptr) return squared_noise_for(settings_.target_rmse, reading_error(samples));
+  if (texel_rounds_ == nullptr || !texel_rounds_->judge.can_judge())
+    return squared_noise_for(settings_.target_rmse, reading_error(samples));
   TexelRounds& rounds = *texel_rounds_;
   const double noise = squared(standard_error(samples.variance));
   if (noise > rounds.wanted) return rounds.wanted;
-  samples.sites = links_->take_sites();
-  make_light(volume_, samples, *resampler_, texels_, settings_, run, result);
-  links_->give_back(std::move(samples.sites));
+  {
+    const LentSites lent(*links_, samples);
+    make_light(volume_, samples, *resampler_, texels_, settings_, run, result);
+  }
   const Stopwatch watch;
   rounds.error = rounds.judge.squared_error(result.light, run);
   rounds.is_lit = true;
   judge_seconds_ += watch.seconds();
-  if (!rounds.error) return squared_noise_for(settings_.target_rmse, reading_error(samples));
   rounds.target.add(noise, *rounds.error);
   rounds.wanted = rounds.target.wanted_noise();
   return rounds.wanted > 0.0 ? rounds.wanted : std::numeric_limits<double>::infinity();

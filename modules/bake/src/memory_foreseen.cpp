@@ -124,6 +124,9 @@ double memory_foreseen(const Volume& volume, const Scene& scene, const BakeSetti
   } else if (has_target(settings) && settings.trace.bounces == 0 && lamps == 0.0) {
     tracing = (kSite + 8.0 * channels + 8.0) * sites + bytes_of_links(settings, sites);
   }
+  // Towards an error texels that several sites make are made, and judged, while rays are kept.
+  const bool are_own = settings.sampler.name == "texels" && resampler->takes_parts();
+  if (settings.target_rmse > 0.0 && !are_own && lamps == 0.0) resampling += tracing - sample * sites;
   return always + std::max({finding, tracing, resampling});
 }
 

@@ -75,8 +75,10 @@ TexelJudge::TexelJudge(const Volume& volume, const Scene& scene, const BakeSetti
       held_out_(volume, scene, places_, numbers_below(places_.size()),
                 paths_of_each(places_.size(), sites, scene, settings), run) {}
 
+bool TexelJudge::can_judge() const { return held_out_.numbers().size() >= kFewestToJudgeBy; }
+
 std::optional<HeldOut::SquaredError> TexelJudge::squared_error(const IlluminationGrid& light, const Run& run) const {
-  if (held_out_.numbers().size() < kFewestToJudgeBy) return {};
+  if (!can_judge()) return {};
   return held_out_.squared_error(read_at(volume_, places_, light, run));
 }
 

@@ -20,7 +20,9 @@ class TexelJudge {
   /// For a bake of so many sites. \throw Cancelled
   TexelJudge(const Volume& volume, const Scene& scene, const BakeSettings& settings, std::size_t sites, const Run& run);
 
-  /// Of light on the texels that `settings` name, of the scene's outer side; none where hardly any place can be lit.
+  /// False where hardly any place can be lit.
+  [[nodiscard]] bool can_judge() const;
+  /// Of light on the texels that `settings` name, of the scene's outer side; none where it cannot judge.
   [[nodiscard]] std::optional<HeldOut::SquaredError> squared_error(const IlluminationGrid& light, const Run& run) const;
   [[nodiscard]] const HeldOut& held_out() const { return held_out_; }
 

@@ -30,7 +30,8 @@ class TexelTarget {
     double sites = 0.0;
     HeldOut::SquaredError texels;
   };
-  /// Of the sites' squared noise that the texels' squared error falls as; 1 as long as that is not known.
+  /// Of the sites' squared noise that the texels' squared error falls as; the most it can be as long as that is not
+  /// known.
   [[nodiscard]] double power() const;
 
   double target_;

@@ -211,8 +211,8 @@ TEST(ScatteredLinks, SayWhereMemoryEnds) {
   EXPECT_FALSE(lit(volume, scene, settings).skipped.contains("links_beyond_memory"));
   settings.target_rmse = 0.001;
   settings.bounce_method = BounceMethod::kIterated;
-  settings.most_link_bytes = 18 * kBytesARay;  // before it is known that no rays would do
-  const BakeResult stopped = lit(volume, scene, settings);
+  settings.most_link_bytes = std::uint64_t(4) * 8 * 24 * 24 * 24 * 18;  // before it is known that no rays would do
+  const BakeResult stopped = lit(read_volume("gen:gyroid:25"), scene, settings);
   EXPECT_EQ(stopped.skipped.at("rounds_beyond_memory"), 1u);
   EXPECT_GT(stopped.rmse_estimate, 0.001);
   constexpr std::uint64_t kBytesASite = 32;

@@ -3,7 +3,9 @@
 #include <isolux/bake.h>
 #include <isolux/volume_io/read.h>
 
+#include <algorithm>
 #include <cmath>
+#include <cstdint>
 
 #include "texel_target.h"
 
@@ -37,12 +39,15 @@ TEST(TexelTarget, WantsTheNoiseThatLeavesTheErrorAsked) {
 
 TEST(TexelTarget, GivesUpWhereWhatStaysIsMoreThanRaysCanTakeAway) {
   TexelTarget target(kTarget);
-  target.add(16.0 * kSquared, texels(16.0 * kSquared, 0.1, 9.0 * kSquared));
+  target.add(64.0 * kSquared, texels(64.0 * kSquared, 0.1, 9.0 * kSquared));
   EXPECT_GT(target.wanted_noise(), 0.0);
   EXPECT_FALSE(target.is_beyond_rays());
   target.add(8.0 * kSquared, texels(8.0 * kSquared, 0.1, 9.0 * kSquared));
   EXPECT_EQ(target.wanted_noise(), 0.0);
   EXPECT_TRUE(target.is_beyond_rays());
+  TexelTarget at_once(kTarget);  // sites so right do not make texels so wrong
+  at_once.add(2.0 * kSquared, texels(2.0 * kSquared, 0.5, 9.0 * kSquared));
+  EXPECT_TRUE(at_once.is_beyond_rays());
 }
 
 // Squared errors of denoised texels fall as the square root of their sites' squared noise.
@@ -57,7 +62,24 @@ TEST(TexelTarget, DoesNotBelieveAnErrorThatMayBeLuck) {
   TexelTarget target(kTarget);
   target.add(9.0 * kSquared, {.mean = 0.9 * kSquared, .standard_error = 0.3 * kSquared});
   EXPECT_FALSE(target.is_reached());
-  EXPECT_GT(target.wanted_noise(), 0.0);
+  EXPECT_NEAR(target.wanted_noise(), 8.1 * kSquared, 1e-9);
+}
+
+// Paths that judge are noisy too: below that the sites' own noise is as small as asked, and it is not said that rays
+// would not help.
+TEST(TexelTarget, EndsByTheSitesNoiseWhereItsJudgesTellNoSmallerError) {
+  TexelTarget target(kTarget);
+  for (const double sites : {64.0, 16.0, 4.0}) {
+    target.add(sites * kSquared, {.mean = 0.2 * kSquared, .standard_error = 2.0 * kSquared});
+    EXPECT_FALSE(target.is_reached());
+    EXPECT_NEAR(target.wanted_noise(), std::max(1.0, sites / 8.0) * kSquared, 1e-9);
+  }
+  target.add(0.9 * kSquared, {.mean = 0.2 * kSquared, .standard_error = 2.0 * kSquared});
+  EXPECT_TRUE(target.is_reached());
+  EXPECT_FALSE(target.is_beyond_rays());
+  TexelTarget missed(kTarget);
+  missed.add(0.9 * kSquared, {.mean = 6.0 * kSquared, .standard_error = 2.0 * kSquared});
+  EXPECT_FALSE(missed.is_reached());
 }
 
 // What a fit is wrong by between its sites no ray takes away: it went on until the noise of the sites was as small as
@@ -83,18 +105,55 @@ TEST(TexelTarget, SpendsNoRaysOnWhatAFitIsWrongByWithoutNoise) {
   }
 }
 
+// Noise averages out over the sites of a texel.
 TEST(TexelTarget, IsReachedByTexelsOfNoisierSites) {
-  const Volume volume = read_volume("gen:sphere:16");
+  const Volume volume = read_volume("gen:gyroid:48");
+  Scene lit;
+  lit.lights.emplace_back(SunLight{});
+  Scene both;
+  both.sides = LitSides::kBoth;
+  for (const Scene& scene : {lit, both}) {
+    BakeSettings settings;
+    settings.trace.bounces = 0;
+    settings.resampler.settings = {{"denoise", "true"}};
+    settings.target_rmse = 0.02;
+    const BakeResult result = bake(volume, scene, settings, builtin_stages(), {});
+    EXPECT_LE(result.rmse_estimate, 0.02);
+    EXPECT_GT(result.noise, 0.025);
+    EXPECT_EQ(result.skipped.count("error_beyond_rays"), 0u);
+  }
+}
+
+TEST(TexelTarget, IsJudgedWhereATimeOrMemoryEndsItsRounds) {
+  const Volume volume = read_volume("gen:gyroid:24");
   BakeSettings settings;
-  settings.trace.bounces = 0;
-  settings.samples = 40000;  // ten a cell
-  settings.target_rmse = 0.02;
+  settings.resampler.name = "fit";
+  settings.target_rmse = 1e-5;
+  settings.target_seconds = 1e-4;
+  const BakeResult hurried = bake(volume, {}, settings, builtin_stages(), {});
+  EXPECT_EQ(hurried.most_rays, 4u);
+  EXPECT_GT(hurried.rmse_estimate, 0.02);
+  settings.target_seconds = 0.0;
+  settings.target_rmse = 0.01;
+  settings.bounce_method = BounceMethod::kIterated;
+  settings.most_link_bytes = std::uint64_t(4) * 18 * hurried.sites;
+  const BakeResult stopped = bake(volume, {}, settings, builtin_stages(), {});
+  EXPECT_EQ(stopped.skipped.count("rounds_beyond_memory"), 1u);
+  EXPECT_GT(stopped.rmse_estimate, 0.02);
+  EXPECT_GT(stopped.most_rays, 16u);
+}
+
+// Nothing of a white closed ball is known but that it is dark.
+TEST(TexelTarget, CountsPlacesThatNobodyCanJudge) {
   Scene scene;
-  scene.lights.emplace_back(SphereLight{.center = Vec3(0.0, 0.0, 3.0), .radius = 0.5f, .radiance = Vec3f(20.0f)});
-  const BakeResult result = bake(volume, scene, settings, builtin_stages(), {});
-  EXPECT_LE(result.rmse_estimate, 0.02);
-  EXPECT_GT(result.noise, 0.0);
-  EXPECT_EQ(result.skipped.count("error_beyond_rays"), 0u);
+  scene.albedo = {.keys = {{0.0f, Vec3f(1.0f)}}};
+  BakeSettings settings;
+  settings.trace.rays = 4;
+  settings.texels = Index3(8);
+  const BakeResult result = bake(read_volume("gen:cavity:17"), scene, settings, builtin_stages(), {});
+  ASSERT_EQ(result.skipped.count("places_unjudged"), 1u);
+  EXPECT_GT(result.skipped.at("places_unjudged"), 20u);
+  EXPECT_LT(result.skipped.at("places_unjudged"), 400u);
 }
 
 }  // namespace

@@ -16,11 +16,7 @@ namespace isolux {
 
 namespace {
 
-bool is_dark(const Scene& scene) {
-  return !EnvironmentView(scene.environment).shines() &&
-         std::all_of(scene.emission.keys.begin(), scene.emission.keys.end(),
-                     [](const IsovalueColour::Key& key) { return key.colour == Vec3f(0.0f); });
-}
+bool is_dark(const Scene& scene) { return !EnvironmentView(scene.environment).shines() && !has_emission(scene); }
 
 }  // namespace
 
