@@ -1,5 +1,7 @@
 #include "files.h"
 
+#include "plain_text.h"
+
 #include <fmt/format.h>
 #include <isolux/core/error.h>
 #include <unistd.h>
@@ -13,6 +15,9 @@
 
 namespace isolux::detail {
 namespace fs = std::filesystem;
+namespace {
+constexpr std::size_t kLongestName = 4096;
+}
 
 std::uint64_t require_file(const std::string& path) {
   std::error_code error;
@@ -52,6 +57,9 @@ bool has_extension(std::string_view path, std::string_view extension) {
 }
 
 std::string resolve_data_file(const std::string& header, const std::string& named, bool allow_external) {
+  if (named.size() > kLongestName)
+    throw InvalidInput(
+        fmt::format("{}: its data file '{}...': a name has {} bytes at most", header, excerpt(named), kLongestName));
   const fs::path folder = fs::absolute(header).parent_path();
   const fs::path data = folder / named;
   std::error_code error;

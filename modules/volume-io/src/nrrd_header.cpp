@@ -52,6 +52,9 @@ class Interpreter {
 
   void run(const ReadOptions& options) {
     header_.key_values = std::move(text_.key_values);
+    // First, as behind LIST the other fields are not read.
+    if (const std::string* named = find("data file"); named != nullptr && names_several_files(*named))
+      refuse("data file", "data spread over several files are not supported; join them first");
     take_sizes();
     take_type();
     take_encoding();
@@ -66,7 +69,7 @@ class Interpreter {
  private:
   [[noreturn]] void refuse(std::string_view field, std::string_view allowed) const {
     throw InvalidInput(
-        fmt::format("{}: '{}: {}': {}", header_.path, field, text_.fields.at(std::string(field)), allowed));
+        fmt::format("{}: '{}: {}': {}", header_.path, field, excerpt(text_.fields.at(std::string(field))), allowed));
   }
   [[nodiscard]] const std::string* find(const std::string& field) const {
     const auto it = text_.fields.find(field);
@@ -204,8 +207,6 @@ class Interpreter {
       return;
     }
     if (named->empty()) refuse("data file", "a file's name is needed");
-    if (names_several_files(*named))
-      refuse("data file", "data spread over several files are not supported; join them first");
     header_.data_file = resolve_data_file(header_.path, *named, options.allow_external_data);
   }
 

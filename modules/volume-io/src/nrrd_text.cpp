@@ -86,16 +86,14 @@ std::string unescape(std::string_view value) {
   return text;
 }
 
-bool is_list(std::string_view data_file) {
-  const auto words = nrrd_words(data_file);
-  return !words.empty() && words.front() == "LIST";
-}
+bool is_list(std::string_view data_file) { return first_word(data_file) == "LIST"; }
 
-void take_line(const std::string& path, const std::string& line, NrrdText& text) {
+// Whether the line ends the fields: names of files follow, to the header's end.
+bool take_line(const std::string& path, const std::string& line, NrrdText& text) {
   // A key may have colons in it, a field's name not.
   if (const auto pair = line.find(":="); pair < line.find(": ")) {
     text.key_values[unescape(std::string_view(line).substr(0, pair))] = unescape(line.substr(pair + 2));
-    return;
+    return false;
   }
   const auto colon = line.find(':');
   if (colon == std::string::npos || colon + 1 >= line.size())
@@ -104,8 +102,9 @@ void take_line(const std::string& path, const std::string& line, NrrdText& text)
   const std::string name = field_name(std::string_view(line).substr(0, colon));
   if (std::find(kFieldNames.begin(), kFieldNames.end(), name) == kFieldNames.end())
     throw InvalidInput(fmt::format("{}: NRRD has no field '{}'", path, excerpt(name)));
-  if (!text.fields.emplace(name, trimmed(std::string_view(line).substr(colon + 1))).second)
-    throw InvalidInput(fmt::format("{}: the field '{}' is given twice", path, name));
+  const auto [field, is_new] = text.fields.emplace(name, trimmed(std::string_view(line).substr(colon + 1)));
+  if (!is_new) throw InvalidInput(fmt::format("{}: the field '{}' is given twice", path, name));
+  return name == "data file" && is_list(field->second);
 }
 
 }  // namespace
@@ -132,11 +131,8 @@ NrrdText read_nrrd_text(const std::string& path) {
     } else if (line.empty()) {
       return text;
     } else if (line.front() != '#') {
-      take_line(path, line, text);
+      if (take_line(path, line, text)) return text;
     }
-    // Names of files follow, to the header's end.
-    if (const auto data = text.fields.find("data file"); data != text.fields.end() && is_list(data->second))
-      return text;
     if (c == std::ifstream::traits_type::eof()) return text;
   }
   throw InvalidInput(fmt::format("{}: the header has more than {} lines", path, kMostLines));

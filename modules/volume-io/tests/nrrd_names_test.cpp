@@ -2,6 +2,8 @@
 
 #include <gmock/gmock.h>
 
+#include <chrono>
+
 // teem, whose format NRRD is, reads names in either case and takes the first ":=" for a pair's.
 namespace isolux {
 namespace {
@@ -59,6 +61,27 @@ TEST(NrrdNames, OfSeveralDataFilesAreRefusedForWhatTheyAre) {
     EXPECT_THAT(test::reading_error(folder.write("a.nhdr", fields + files)),
                 ::testing::AllOf(::testing::HasSubstr("a.nhdr: 'data file: "), ::testing::HasSubstr("join them first")))
         << files;
+  EXPECT_THAT(test::reading_error(folder.write("a.nhdr", "NRRD0004\ndata file: LIST\ntype: uchar\n")),
+              ::testing::HasSubstr("join them first"))
+      << "whatever else is missing";
+}
+
+// Names may be long, but not read anew for every line behind them, or shown whole.
+TEST(NrrdNames, OfDataFilesAreReadOnce) {
+  const test::TemporaryFolder folder;
+  std::string names = "data file: ";
+  for (int i = 0; i < 1000000; ++i) names += "x ";
+  std::string comments;
+  for (int i = 0; i < 2000; ++i) comments += "# a comment\n";
+  const std::string fields = "type: uchar\nencoding: raw\ndimension: 3\nsizes: 3 2 2\n";
+  for (const std::string& first : {names, names + "%"}) {
+    const std::string path = folder.write("a.nhdr", "NRRD0004\n" + fields + first + "\n" + comments);
+    const auto start = std::chrono::steady_clock::now();
+    const std::string message = test::reading_error(path);
+    EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(10));
+    EXPECT_THAT(message, ::testing::HasSubstr("x x x"));
+    EXPECT_LT(message.size(), 1000u);
+  }
 }
 
 }  // namespace
