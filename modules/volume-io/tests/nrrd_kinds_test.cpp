@@ -63,6 +63,10 @@ TEST_F(NrrdKinds, OfTimeAreNoSpaceWhereThereIsEnough) {
   EXPECT_EQ(pictures.lattice().size, Index3(3, 2, 2));
   EXPECT_THAT(pictures.remarks, ElementsAre(HasSubstr("a.nrrd: its axis of the kind 'time' is taken as one of space")));
   EXPECT_THAT(read_volume(file("3 4 1", "domain domain time")).remarks, IsEmpty());
+  EXPECT_THAT(test::reading_error(file("3 2 2", "time time domain")),
+              HasSubstr("axis 1 of 3 has 3 samples of the kind 'time'"));
+  EXPECT_THAT(test::reading_error(file("3 1 4", "domain time time")), HasSubstr("axis 3 of 3 has 4 samples"));
+  EXPECT_EQ(read_volume(file("3 2 2 1", "domain domain time time")).lattice().size, Index3(3, 2, 2));
 }
 
 }  // namespace

@@ -52,10 +52,13 @@ bool is_of_time(const detail::NrrdAxis& axis) { return axis.kind == "time"; }
 // Axes of several samples that are none of space would be taken for it.
 void require_space(const detail::NrrdHeader& header) {
   const auto is_space = [](const detail::NrrdAxis& axis) { return !is_of_values(axis.kind) && !is_of_time(axis); };
-  const bool is_series = std::count_if(header.axes.begin(), header.axes.end(), is_space) >= 3;
+  const auto is_series = [](const detail::NrrdAxis& axis) { return axis.size > 1 && is_of_time(axis); };
+  // One of time beside two of space is how some programs write a stack of pictures.
+  const bool is_stack = std::count_if(header.axes.begin(), header.axes.end(), is_space) == 2 &&
+                        std::count_if(header.axes.begin(), header.axes.end(), is_series) == 1;
   for (std::size_t a = 0; a < header.axes.size(); ++a) {
     const detail::NrrdAxis& axis = header.axes[a];
-    if (axis.size <= 1 || is_space(axis) || (is_of_time(axis) && !is_series)) continue;
+    if (axis.size <= 1 || is_space(axis) || (is_of_time(axis) && is_stack)) continue;
     throw InvalidInput(
         fmt::format("{}: axis {} of {} has {} samples of the kind '{}': a volume has 3 axes of space (of the kinds "
                     "domain and space, or of none), one number a voxel; others may have 1 sample only",
