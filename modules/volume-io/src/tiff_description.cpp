@@ -31,6 +31,20 @@ std::uint64_t number_of(std::string_view text, std::string_view key, std::string
 std::uint64_t of_line(std::string_view text, std::string_view key) { return number_of(text, key, "\n"); }
 std::uint64_t of_attribute(std::string_view tag, std::string_view key) { return number_of(tag, key, " \t\r\n"); }
 
+// Where an XML element of this name begins, with or without a prefix such as "ome:".
+std::size_t find_tag(std::string_view text, std::string_view name, std::size_t from = 0) {
+  for (std::size_t at = text.find('<', from); at != std::string_view::npos; at = text.find('<', at + 1)) {
+    const std::string_view rest = text.substr(at + 1);
+    if (rest.starts_with("!--")) {
+      at = std::min(text.find("-->", at), text.size() - 1);
+      continue;
+    }
+    const std::string_view found = rest.substr(0, rest.find_first_of(" \t\r\n/><"));
+    if (found.substr(found.find(':') + 1) == name) return at;  // all of it without a colon, npos + 1 being 0
+  }
+  return std::string_view::npos;
+}
+
 // Pages of several axes lie in an order that a volume has not. Those of one may be sections by a wrong name: the
 // program tifffile calls them channels unless it is told.
 std::string check_axes(const std::string& path, const Hyperstack& stack) {
@@ -58,8 +72,8 @@ std::string check_imagej(const std::string& path, std::string_view text, std::ui
 }
 
 std::string check_ome(const std::string& path, std::string_view text, std::uint64_t pages) {
-  constexpr std::string_view kPixels = "Pixels ";
-  const std::size_t begin = text.find(kPixels);
+  constexpr std::string_view kPixels = "Pixels";
+  const std::size_t begin = find_tag(text, kPixels);
   if (begin == std::string_view::npos) return {};
   const std::string_view tag = text.substr(begin, text.find('>', begin) - begin);
   const Hyperstack stack{.program = "OME",
@@ -67,7 +81,8 @@ std::string check_ome(const std::string& path, std::string_view text, std::uint6
                          .sections = of_attribute(tag, "SizeZ"),
                          .frames = of_attribute(tag, "SizeT")};
   std::string remark = check_axes(path, stack);
-  if (pages > stack.channels * stack.sections * stack.frames && text.find(kPixels, begin + 1) != std::string_view::npos)
+  if (pages > stack.channels * stack.sections * stack.frames &&
+      find_tag(text, kPixels, begin + 1) != std::string_view::npos)
     throw InvalidInput(
         fmt::format("{}: OME says several images, the first of {} sections: save one alone", path, stack.sections));
   return remark;
@@ -77,7 +92,7 @@ std::string check_ome(const std::string& path, std::string_view text, std::uint6
 
 std::string check_description(const std::string& path, std::string_view description, std::uint64_t pages) {
   if (description.starts_with("ImageJ=")) return check_imagej(path, description, pages);
-  return description.find("<OME") == std::string_view::npos ? "" : check_ome(path, description, pages);
+  return find_tag(description, "OME") == std::string_view::npos ? "" : check_ome(path, description, pages);
 }
 
 }  // namespace isolux::detail

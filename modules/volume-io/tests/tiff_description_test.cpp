@@ -71,6 +71,35 @@ TEST_F(Itk, RefusesSeveralImagesOfOmeInTiff) {
       << "the others are elsewhere";
 }
 
+TEST_F(Itk, ReadsOmeThatNamesPixelsInItsText) {
+  const std::string two = R"(SizeC="1" SizeZ="2" SizeT="1")";
+  const auto named = [&](const std::string& before) { return ome(two).insert(ome(two).find("<Image"), before); };
+  for (const std::string& text :
+       {named(R"(<Image Name="Pixels 2020"/>)"), named("<Description>320 Pixels wide</Description>"),
+        named("<!-- <Pixels SizeC=\"2\"> -->"), named("<PixelsOfOthers SizeC=\"2\"/>"),
+        ome(two, "<Description>320 Pixels wide</Description>")}) {
+    const Volume volume = read_volume(folder_.write("a.tif", described(text)), kSpaced);
+    expect_ramp(volume);
+    EXPECT_THAT(volume.remarks, IsEmpty()) << text;
+  }
+  const std::string one = R"(SizeC="1" SizeZ="1" SizeT="1")";
+  EXPECT_EQ(test::reading_error(folder_.write("a.tif", described(ome(one, "<Text>Pixels of 1</Text>"))), kSpaced), "");
+}
+
+TEST_F(Itk, ReadsTagsOfOmeHoweverXmlWritesThem) {
+  const std::string sizes = R"(SizeC="2" SizeZ="4" SizeT="1"/></Image></OME>)";
+  for (const std::string head :
+       {"<OME>\n<Image>\n<Pixels\n", "<OME\n><Image><Pixels\t", "<OME><Image><Pixels\r\nID='a'\r\n",
+        "<ome:OME xmlns:ome='http://x'><ome:Image><ome:Pixels ", "<o:OME><o:Image><o:Pixels\n"})
+    EXPECT_THAT(refused("a.tif", described(head + sizes), kSpaced), HasSubstr("OME says channels: 2, sections: 4"))
+        << head;
+  const std::string image = "<ome:Image><ome:Pixels\nSizeC='1'\nSizeZ='1'\nSizeT='1'/></ome:Image>";
+  EXPECT_THAT(refused("a.tif", described("<ome:OME>" + image + image + "</ome:OME>"), kSpaced),
+              HasSubstr("OME says several images, the first of 1 sections"));
+  EXPECT_EQ(test::reading_error(folder_.write("a.tif", described("<OMEGA><Pixels SizeC='2' SizeZ='4'/>")), kSpaced),
+            "");
+}
+
 TEST_F(Itk, RefusesTiffDescriptionsThatAreLongerThanTheFile) {
   std::string bytes = described("ImageJ=1.53t\nimages=2\n");
   test::put<std::uint32_t>(bytes, 10 + 5 * 12 + 4, 4000000000u);
