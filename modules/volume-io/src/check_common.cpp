@@ -1,11 +1,11 @@
 #include "format_checks.h"
+#include "plain_text.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <isolux/core/error.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <filesystem>
 
@@ -14,13 +14,12 @@ namespace {
 
 // Runs of digits compare as numbers.
 bool natural_less(const std::string& a, const std::string& b) {
-  const auto digit = [](char c) { return std::isdigit(static_cast<unsigned char>(c)) != 0; };
   std::size_t i = 0;
   std::size_t j = 0;
   while (i < a.size() && j < b.size()) {
-    if (digit(a[i]) && digit(b[j])) {
+    if (is_digit(a[i]) && is_digit(b[j])) {
       const auto number_end = [&](const std::string& text, std::size_t at) {
-        while (at < text.size() && digit(text[at])) ++at;
+        while (at < text.size() && is_digit(text[at])) ++at;
         return at;
       };
       while (i < a.size() && a[i] == '0') ++i;

@@ -39,7 +39,7 @@ struct CheckedHeader {
 [[nodiscard]] std::vector<std::string> files_in_folder(const std::string& folder, bool (*is)(const std::string&));
 
 /// A remark on the first number that the names of a folder's pages, in the order of their numbers, leave out; empty if
-/// they leave out none, or do not count pages.
+/// they leave out none, differ in more than one number, or do not count pages in one step but for such gaps.
 [[nodiscard]] std::string missing_page(const std::string& folder, const std::vector<std::string>& files);
 
 /// \throw InvalidInput unless every number is finite and, for a spacing, not zero

@@ -1,17 +1,15 @@
 #include "format_checks.h"
+#include "plain_text.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 #include <charconv>
 #include <filesystem>
 #include <optional>
 
 namespace isolux::detail {
 namespace {
-
-bool is_digit(char c) { return std::isdigit(static_cast<unsigned char>(c)) != 0; }
 
 // The number in which a name differs from the next.
 struct PageNumber {
@@ -63,8 +61,10 @@ std::string missing_page(const std::string& folder, const std::vector<std::strin
                                 return a.step < b.step;
                               })->step;
   const auto is_usual = [&](const PageNumber& number) { return number.step == usual; };
-  // Numbers of which most leap otherwise do not count pages.
-  if (2 * std::size_t(std::count_if(numbers.begin(), numbers.end(), is_usual)) < numbers.size()) return {};
+  // Times and the like leap anyhow; numbers of pages mostly by one step, and over pages that are not there by several.
+  const auto count = std::size_t(std::count_if(numbers.begin(), numbers.end(), is_usual));
+  if (count < 2 || 2 * count <= numbers.size()) return {};
+  if (std::any_of(numbers.begin(), numbers.end(), [&](const auto& n) { return n.step % usual != 0; })) return {};
   const auto gap = std::find_if_not(numbers.begin(), numbers.end(), is_usual);
   if (gap == numbers.end()) return {};
   const auto before = std::size_t(gap - numbers.begin());
