@@ -200,6 +200,12 @@ std::string contradiction(const std::string& path, const Fields& f, const std::a
     apart = std::max(apart, std::isfinite(distance) ? distance : HUGE_VAL);
   }
   if (apart <= kMostApart) return {};
+  // What is used is checked, so that the other is to blame.
+  if (!std::isfinite(apart))
+    return by_sform(f) ? fmt::format("{}: its qform (code {}) gives corners no finite places: the sform is used", path,
+                                     f.qform_code)
+                       : fmt::format("{}: its sform (code {}) gives corners no finite places: the qform is used", path,
+                                     f.sform_code);
   return fmt::format(
       "{}: its sform (code {}) and its qform (code {}) place a corner {:.3g} voxels apart: the {} is used, as ITK and "
       "3D Slicer do",

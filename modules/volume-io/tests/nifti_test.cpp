@@ -201,7 +201,11 @@ TEST_F(Nifti, SaysWhereItsFormsContradictEachOther) {
   }
   std::string spoiled = with_codes(2, 1);
   test::put<float>(spoiled, 280, std::nanf(""));
-  EXPECT_EQ(remarks(spoiled).size(), 1u) << "what is not used may be anything";
+  EXPECT_THAT(remarks(spoiled), ::testing::ElementsAre(
+                                    HasSubstr("its sform (code 2) gives corners no finite places: the qform is used")));
+  spoiled = with_codes(1, 4);
+  test::put<float>(spoiled, 256, std::nanf(""));
+  EXPECT_THAT(remarks(spoiled), ::testing::ElementsAre(HasSubstr("its qform (code 4) gives corners no finite places")));
 }
 
 TEST_F(Nifti, TurnsByItsQuaternionAndMirrorsByItsQfac) {
