@@ -61,7 +61,7 @@ void take(const std::string& path, const Element& e, DicomWalker& walker, DicomI
   if (e.tag == 0x00280100u) image.bits = walker.number(e);
   if (e.tag == 0x00280101u) image.stored_bits = walker.number(e);
   if (e.tag == 0x00280103u) image.is_signed = walker.number(e) != 0;
-  if (e.tag == 0x00283000u) image.has_table = e.length != 0;
+  if (e.tag == 0x00283000u) image.has_table = walker.has_items(e);
   if (e.tag == 0x00281053u) image.slope = walker.text(e);
   if (e.tag == 0x52009229u || e.tag == 0x52009230u) image.functional_groups = true;
 }

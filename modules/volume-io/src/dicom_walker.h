@@ -115,6 +115,10 @@ class DicomWalker {
   [[nodiscard]] std::uint64_t number(const Element& e) {
     return e.length < 2 ? 0 : bytes(e.value, 2).get<std::uint16_t>(0);
   }
+  /// Of a sequence, which may be empty with a length and without.
+  [[nodiscard]] bool has_items(const Element& e) {
+    return e.length == kUndefined ? tag_at(e.value) != kSequenceEnd : e.length != 0;
+  }
   [[nodiscard]] std::uint64_t bytes_behind(const Element& e) const { return size_ - std::min(e.value, size_); }
   void go_to(std::uint64_t offset) { at_ = offset; }
 
@@ -127,8 +131,11 @@ class DicomWalker {
   [[nodiscard]] bool holds_elements(const Element& e) {
     if (e.tag == kItem || e.kind == "SQ") return !fragments_;
     if (!e.kind.empty() || e.tag == kPixelData || e.length < 8) return false;
-    const HeaderBytes start = bytes(e.value, 4);
-    return (std::uint32_t(start.get<std::uint16_t>(0)) << 16 | start.get<std::uint16_t>(2)) == kItem;
+    return tag_at(e.value) == kItem;
+  }
+  std::uint32_t tag_at(std::uint64_t offset) {
+    const HeaderBytes start = bytes(offset, 4);
+    return std::uint32_t(start.get<std::uint16_t>(0)) << 16 | start.get<std::uint16_t>(2);
   }
   std::string raw(const Element& e, std::uint32_t most) {
     const std::uint64_t count = std::min(e.length, most);

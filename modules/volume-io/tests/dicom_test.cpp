@@ -175,14 +175,18 @@ TEST_F(Itk, RefusesDicomPixelsThatGdcmCannotTake) {
 // GDCM leaves it aside.
 TEST_F(Itk, RefusesDicomWithATableOfWhatValuesStandFor) {
   const std::string item = test::bytes_of<std::uint16_t>({0xFFFE, 0xE000, 0, 0});
-  const auto with = [&](const std::string& items) {
+  const std::string end = test::bytes_of<std::uint16_t>({0xFFFE, 0xE0DD, 0, 0});
+  const auto with = [&](const std::string& items, bool has_end = false) {
     const std::string head = test::bytes_of<std::uint16_t>({0x28, 0x3000}) + "SQ" + std::string(2, '\0');
+    const std::uint32_t length = has_end ? 0xFFFFFFFFu : std::uint32_t(items.size());
     std::string bytes = test::dicom_sample({});
     return bytes.insert(bytes.rfind(test::bytes_of<std::uint16_t>({0x7FE0, 0x10})),
-                        head + test::bytes_of<std::uint32_t>({std::uint32_t(items.size())}) + items);
+                        head + test::bytes_of<std::uint32_t>({length}) + items + (has_end ? end : ""));
   };
-  EXPECT_THAT(refused("a.dcm", with(item)), HasSubstr("a ModalityLUTSequence"));
-  EXPECT_EQ(test::reading_error(folder_.write("a.dcm", with(""))), "");
+  for (const bool has_end : {false, true}) {
+    EXPECT_THAT(refused("a.dcm", with(item, has_end)), HasSubstr("a ModalityLUTSequence"));
+    EXPECT_EQ(test::reading_error(folder_.write("a.dcm", with("", has_end))), "");
+  }
 }
 
 // GDCM takes them for the world's axes.
