@@ -109,7 +109,7 @@ void say_of_error(const BakeResult& result, double asked, const Session& session
         "away",
         result.reading_error);
   else if (result.noise > 0.0 && result.noise <= kNear * asked)
-    why = "; the noise of its rays is less than asked, and the paths that judge it tell no smaller error";
+    why = "; the noise of its rays is less than asked, and the rest may be that of the paths that judge it";
   session.warn(fmt::format("the error asked is not reached: about {:.4f} of {}{}", result.rmse_estimate, asked, why));
 }
 

@@ -209,12 +209,12 @@ TEST(ScatteredLinks, SayWhereMemoryEnds) {
   EXPECT_EQ(half.skipped.at("links_beyond_memory"), 4u * 8u * 512u);
   settings.most_link_bytes = 8 * kBytesARay;
   EXPECT_FALSE(lit(volume, scene, settings).skipped.contains("links_beyond_memory"));
-  settings.target_rmse = 0.001;
+  settings.target_rmse = 0.015;
   settings.bounce_method = BounceMethod::kIterated;
   settings.most_link_bytes = std::uint64_t(4) * 8 * 24 * 24 * 24 * 18;  // before it is known that no rays would do
   const BakeResult stopped = lit(read_volume("gen:gyroid:25"), scene, settings);
   EXPECT_EQ(stopped.skipped.at("rounds_beyond_memory"), 1u);
-  EXPECT_GT(stopped.rmse_estimate, 0.001);
+  EXPECT_GT(stopped.rmse_estimate, 0.015);
   constexpr std::uint64_t kBytesASite = 32;
   EXPECT_LE(stopped.link_bytes, settings.most_link_bytes + kBytesASite * stopped.sites);
 }
