@@ -20,6 +20,15 @@ class BothSides(CommandLineTest):
         fields, _, data = nrrd_header(self.path(name))
         return fields, struct.unpack("<%df" % (len(data) // 4), data)
 
+    def test_an_error_is_asked_of_each(self):
+        asked = self.succeed("bake", "gen:sphere:16", "-o", "fit.nrrd", "--resampler", "fit", "--bounces", 0, "--rmse", 0.012, "--quiet",
+                             "--report", "report.json", "--scene", "both.json")
+        report = self.report()
+        self.assertLess(report["rmse_estimate"], 0.012)  # of both together
+        inner = report["sides"]["inner"]["rmse_estimate"]
+        self.assertGreater(inner, 0.0126)
+        self.assertIn("the error asked is not reached: about %.4f of 0.012" % inner, asked.stderr)
+
     def test_follow_one_another_on_the_channel_axis(self):
         self.bake("--scene", "both.json", "--error-grid", "error.nrrd", "--rmse", 0.05, "--report", "report.json", volume="gen:gyroid:12")
         fields, both = self.values("both.nrrd")

@@ -111,6 +111,11 @@ class Bake(CommandLineTest):
         # Whoever asked for an error hears that it is missed, as of a --time.
         missed = self.succeed("bake", "gen:noise:6", "-o", "noise.nrrd", "--samples", 20, "--rmse", 0.001, "--bounces", 0, "--quiet")
         self.assertRegex(missed.stderr, r"^isolux: warning: the error asked is not reached: about \S+ of 0.001[^\n]*\n$")
+        fit = self.succeed("bake", "gen:gyroid:12", "-o", "fit.nrrd", "--resampler", "fit", "--rmse", 0.02, "--bounces", 0, "--quiet")
+        self.assertRegex(fit.stderr, r"about \S+ of 0.02; more rays would hardly take any away, but more texels do \(--texels-a-cell\)\n$")
+        self.write("white.json", '{"albedo": [1, 1, 1]}')
+        white = self.succeed("bake", "gen:cavity:17", "-o", "white.nrrd", "--rays", 4, "--scene", "white.json", "--quiet")
+        self.assertRegex(white.stderr, r"^isolux: warning: \d+ of the places that the error is judged by lie in pockets[^\n]*\n$")
         rough = self.succeed("bake", "gen:noise:6", "-o", "noise.nrrd", "--texels", "auto", "--rmse", 0.02, "--bounces", 0, "--quiet")
         self.assertRegex(rough.stderr, r"^isolux: warning: the error asked is not reached: light is wrong by about \S+ of 0.02 between \S+ texels[^\n]*\n$")
         self.bake("--rmse", 0.02, "--error-grid", "error.nrrd", "--report", "report.json", volume="gen:gyroid:17")

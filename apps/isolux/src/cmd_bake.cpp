@@ -39,11 +39,6 @@ void report_bake(const BakeResult& result, Session& session) {
   report["skipped"] = result.skipped;
   report["skipped"]["searches_for_hits"] = result.counters.proven;
   report["skipped"]["rays_to_suns"] = result.counters.known;
-  if (const auto it = result.skipped.find("places_unjudged"); it != result.skipped.end())
-    session.warn(fmt::format(
-        "{} of the places that the error is judged by lie in pockets that hardly any path leaves, of nearly "
-        "white surfaces: how wrong the light of such pockets is nobody knows",
-        it->second));
   if (result.seconds_beyond_time > 0.0) report["seconds_beyond_time"] = result.seconds_beyond_time;
   report["link_bytes"] = result.link_bytes;
   report["texels"] = texels.count();
@@ -76,6 +71,11 @@ void say_what_was_done(const BakeResult& result, const Session& session) {
         fmt::format("{} paths were cut off after the most reflections (tracer.longest_path): behind narrow ways out of "
                     "white surfaces the light may be too dark; --bounce-method iterated knows no such limit",
                     it->second));
+  if (const auto it = result.skipped.find("places_unjudged"); it != result.skipped.end())
+    session.warn(fmt::format(
+        "{} of the places that the error is judged by lie in pockets that hardly any path leaves, of nearly "
+        "white surfaces: how wrong the light of such pockets is nobody knows",
+        it->second));
   if (result.seconds_beyond_time > 0.0)
     session.warn(
         fmt::format("--time {} is exceeded by {:.2g} s: {} rays of each of {} sites took so long; fewer texels "
@@ -98,9 +98,11 @@ const char* what_takes_errors_away(const BakeSettings& settings) {
 
 /// Small volumes and rough light can end above what was asked.
 void say_of_error(const BakeResult& result, double asked, const Session& session) {
-  if (!(asked > 0.0 && result.rmse_estimate > kNear * asked)) return;
+  double error = result.rmse_estimate;  // which is asked of each side
+  for (const SideFigures& side : result.sides) error = std::max(error, side.rmse_estimate);
+  if (!(asked > 0.0 && error > kNear * asked)) return;
   std::string why;
-  const double reading = result.reading_error / result.rmse_estimate;
+  const double reading = result.reading_error / error;
   if (result.skipped.contains("error_beyond_rays") && reading * reading < 0.5)
     why = fmt::format("; more rays would hardly take any away, but {}", what_takes_errors_away(result.settings));
   else if (result.reading_error > 0.0)
@@ -110,7 +112,7 @@ void say_of_error(const BakeResult& result, double asked, const Session& session
         result.reading_error);
   else if (result.noise > 0.0 && result.noise <= kNear * asked)
     why = "; the noise of its rays is less than asked, and the rest may be that of the paths that judge it";
-  session.warn(fmt::format("the error asked is not reached: about {:.4f} of {}{}", result.rmse_estimate, asked, why));
+  session.warn(fmt::format("the error asked is not reached: about {:.4f} of {}{}", error, asked, why));
 }
 
 /// --texels auto
