@@ -9,6 +9,7 @@
 #include "bake_in_parts.h"
 #include "bake_parts.h"
 #include "resampling_choice.h"
+#include "texel_judge.h"
 
 namespace isolux {
 namespace {
@@ -125,8 +126,8 @@ double memory_foreseen(const Volume& volume, const Scene& scene, const BakeSetti
     tracing = (kSite + 8.0 * channels + 8.0) * sites + bytes_of_links(settings, sites);
   }
   // Towards an error texels that several sites make are made, and judged, while rays are kept.
-  const bool are_own = settings.sampler.name == "texels" && resampler->takes_parts();
-  if (settings.target_rmse > 0.0 && !are_own && lamps == 0.0) resampling += tracing - sample * sites;
+  if (settings.target_rmse > 0.0 && !are_sites_own(*resampler, settings) && lamps == 0.0)
+    resampling += tracing - sample * sites;
   return always + std::max({finding, tracing, resampling});
 }
 

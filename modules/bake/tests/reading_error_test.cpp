@@ -72,7 +72,7 @@ TEST(HeldOut, LeavesOutPlacesWhosePathsAreCutOff) {
 }
 
 // Of a white gyroid that the box cuts open some pockets have narrow ways out: their light is what their paths found, up
-// to 1 more for each that was cut off. Left out, they hid that light was .05 wrong.
+// to 1 more for each that was cut off. Left out, they hid most of an error of .04.
 TEST(HeldOut, CountsAsRightWhatCutPathsMayStillBring) {
   const Volume volume = read_volume("gen:gyroid:32");
   Scene scene;

@@ -95,8 +95,8 @@ TEST(TexelTarget, SpendsNoRaysOnWhatAFitIsWrongByWithoutNoise) {
   for (const Scene& scene : {Scene{}, lit}) {
     const BakeResult result = bake(volume, scene, settings, builtin_stages(), {});
     EXPECT_EQ(result.skipped.count("error_beyond_rays"), 1u);
-    EXPECT_GT(result.rmse_estimate, 0.01);
-    EXPECT_GT(result.noise, 0.006);  // it was .0048
+    EXPECT_GT(result.rmse_estimate, 0.1);
+    EXPECT_GT(result.noise, 0.022);  // it was below .02
     BakeSettings more = settings;
     more.target_rmse = 0.0;
     more.trace.rays = int(result.most_rays) * 8;
