@@ -27,6 +27,7 @@ option(ISOLUX_EXAMPLES "Build the examples of the modules' READMEs" ${PROJECT_IS
 option(ISOLUX_UNITY "Compile several sources of a library or program as one: two thirds of the time, as headers cost most of it" OFF)
 option(ISOLUX_WERROR "Treat warnings as errors" OFF)
 set(ISOLUX_TEST_FLAGS "" CACHE STRING "Compiler flags of test programs alone, such as -O1: their own code takes longer to compile than to run")
+set(ISOLUX_TEST_SHARDS "" CACHE STRING "Run each program of tests in so many processes, instead of one for each test")
 set(ISOLUX_SANITIZE "" CACHE STRING "Sanitizers, such as address,undefined or thread")
 set(ISOLUX_WITHOUT "" CACHE STRING "Packages to do without even where they are installed, such as CGAL;ITK")
 
@@ -237,8 +238,17 @@ endfunction()
 function(isolux_discover_tests program timeout)
   set(folder ${CMAKE_CURRENT_BINARY_DIR}/tmp)
   file(MAKE_DIRECTORY ${folder})
-  gtest_discover_tests(${program} NO_PRETTY_VALUES DISCOVERY_TIMEOUT 60 PROPERTIES TIMEOUT ${timeout} ENVIRONMENT TEST_TMPDIR=${folder}
-    ENVIRONMENT_MODIFICATION TMPDIR=set:${folder} ${ARGN})
+  set(properties TIMEOUT ${timeout} ENVIRONMENT_MODIFICATION TMPDIR=set:${folder} ${ARGN})
+  if(NOT ISOLUX_TEST_SHARDS)
+    gtest_discover_tests(${program} NO_PRETTY_VALUES DISCOVERY_TIMEOUT 60 PROPERTIES ${properties} ENVIRONMENT TEST_TMPDIR=${folder})
+    return()
+  endif()
+  math(EXPR last "${ISOLUX_TEST_SHARDS} - 1")
+  foreach(shard RANGE ${last})
+    add_test(NAME ${program}.${shard} COMMAND ${program})
+    set_tests_properties(${program}.${shard} PROPERTIES ${properties}
+      ENVIRONMENT "TEST_TMPDIR=${folder};GTEST_TOTAL_SHARDS=${ISOLUX_TEST_SHARDS};GTEST_SHARD_INDEX=${shard}")
+  endforeach()
 endfunction()
 
 function(_isolux_programs name id test_packages bench_packages)

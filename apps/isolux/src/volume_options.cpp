@@ -35,7 +35,9 @@ void VolumeOptions::add_to(CLI::App& command, Session& session) {
     return source_.empty() ? none : volume_files(source_, read_options(session), session.stages.readers);
   };
   session.reads({.name = "VOLUME", .paths = files});
-  command.add_option("VOLUME", source_, "a file, a folder of DICOM slices, or gen:NAME[:N]")->required();
+  CLI::Option* source =
+      command.add_option("VOLUME", source_, "a file, a folder of DICOM slices, or gen:NAME[:N]")->required();
+  const std::size_t others = command.get_options().size();
   command.add_option("--dims", dims_, "grid points of a headerless file")->type_name("NXxNYxNZ");
   command.add_option("--type", type_, "scalar type of a headerless file, such as uint8 or float32")->type_name("TYPE");
   command.add_option("--spacing", spacing_, "distance of grid points, world units; replaces the file's")
@@ -58,6 +60,8 @@ void VolumeOptions::add_to(CLI::App& command, Session& session) {
       ->check(key_and_value())
       ->type_name("NAME.key=value");
   command.add_flag("--allow-external-data", allow_external_, "a header may name a data file outside its folder");
+  const std::vector<CLI::Option*> options = command.get_options();
+  for (std::size_t i = others; i < options.size(); ++i) options[i]->needs(source);  // isolux view may have none
 }
 
 ReadOptions VolumeOptions::read_options(const Session& session) const {

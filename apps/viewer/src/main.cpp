@@ -143,12 +143,13 @@ struct Words {
   }
 };
 
-/// The slider has no place for other isovalues.
-void warn_outside(std::optional<float> isovalue, const viewer::Document& document, const Session& session) {
+/// The isovalue asked for, drawn into the volume's values, with a warning, as the slider has no place for others.
+float within_values(float isovalue, const viewer::Document& document, const Session& session) {
   const ValueRange range = document.histogram.range;
-  if (!isovalue || (*isovalue >= range.low && *isovalue <= range.high)) return;
-  session.warn(fmt::format("--iso {} lies outside the values of {} ({} to {}): the nearest of these is shown",
-                           *isovalue, document.volume->name(), range.low, range.high));
+  if (isovalue >= range.low && isovalue <= range.high) return isovalue;
+  session.warn(fmt::format("--iso {} lies outside the values of {} ({} to {}): the nearest of these is shown", isovalue,
+                           document.volume->name(), range.low, range.high));
+  return std::clamp(isovalue, range.low, range.high);
 }
 
 void look(const Words& words, viewer::AppSettings settings, Session& session) {
@@ -159,8 +160,8 @@ void look(const Words& words, viewer::AppSettings settings, Session& session) {
   std::optional<float> isovalue;
   if (words.iso.given()) isovalue = words.iso.in(volume).front();
   viewer::Document document = viewer::make_document(std::move(volume));
+  if (isovalue) isovalue = within_values(*isovalue, document, session);
   if (words.light.given()) document.light = words.read_light(document.volume->floats(), isovalue, session);
-  warn_outside(isovalue, document, session);
   if (isovalue) settings.viewer.isovalue = double(*isovalue);
   session.report["settings"]["isovalue"] =
       session.timed("view", [&] { return viewer::run_app(std::move(document), settings, session.stages); });

@@ -5,6 +5,7 @@
 #include <isolux/core/error.h>
 #include <isolux/volume_io/read.h>
 
+#include <cmath>
 #include <new>
 #include <stdexcept>
 
@@ -56,6 +57,8 @@ std::unique_ptr<VolumeReader> reader_of(const std::string& source, const ReadOpt
 
 StoredVolume read_in_form(const std::string& source, ReadOptions options, VoxelForm form, const Run& run,
                           const Registry<VolumeReader>& registry) {
+  if (!std::isfinite(options.subtract))
+    throw InvalidInput(fmt::format("ReadOptions::subtract = {}: allowed are finite numbers", options.subtract));
   options.form = form;
   const auto reader = reader_of(source, options, registry);
   try {

@@ -3,6 +3,8 @@
 
 #include <gmock/gmock.h>
 
+#include <limits>
+
 namespace isolux {
 namespace {
 using test::bytes_of;
@@ -79,6 +81,14 @@ TEST_F(Rounding, OffsetsAreTakenOffEveryFormat) {
     const std::vector<float> less = test::values_of(to_floats(read_stored_volume(path, options)));
     ASSERT_EQ(less.size(), plain.size()) << path;
     for (std::size_t i = 0; i < less.size(); ++i) EXPECT_EQ(less[i], float(double(plain[i]) - 100.0)) << path;
+  }
+}
+
+TEST(Reading, RefusesOffsetsThatAreNoNumbers) {
+  for (const double offset : {std::numeric_limits<double>::quiet_NaN(), -std::numeric_limits<double>::infinity()}) {
+    ReadOptions options;
+    options.subtract = offset;
+    EXPECT_THROW((void)read_volume("gen:sphere:4", options), InvalidInput) << offset;
   }
 }
 
