@@ -36,6 +36,7 @@ class MovingLeastSquares final : public Resampler {
 
   ResampledGrid resample(const Volume& volume, const SampleSet& samples, const Lattice& texels,
                          const Run& run) const override {
+    require_samples(samples);
     ShepardOptions neighbours;
     neighbours.k = options_.k > 0 ? options_.k : count_for(samples);
     neighbours.isovalue_length = options_.isovalue_length;
