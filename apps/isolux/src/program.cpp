@@ -24,16 +24,17 @@ int run_program(std::string what, const std::function<int(Session& session, std:
   open_standard_streams();
   std::signal(SIGXFSZ, SIG_IGN);
   std::atomic_flag told{};  // one line says that the program was interrupted, whoever is first
-  const SignalWatcher signals([&told] {
+  const auto end_at_once = [&told] {
     const auto no_more = remove_temporary_files();
     if (!told.test_and_set()) complain("signal", "interrupted a second time and ended at once");
     _exit(kInterrupted);
-  });
+  };
   const auto fail = [&what](const std::string& why, ExitStatus status) -> int {
     complain(what, why);
     return status;
   };
   try {
+    const SignalWatcher signals(end_at_once);
     Session session;
     session.run.stop = signals.token();
     const int status = work(session, what);

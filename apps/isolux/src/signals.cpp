@@ -1,8 +1,11 @@
 #include "signals.h"
 
+#include <fmt/format.h>
+#include <isolux/core/error.h>
 #include <pthread.h>
 
 #include <csignal>
+#include <system_error>
 #include <utility>
 
 namespace isolux {
@@ -23,13 +26,18 @@ SignalWatcher::SignalWatcher(std::function<void()> end_at_once) {
   sigaddset(&signals, SIGTERM);
   if (hang_up_counts()) sigaddset(&signals, SIGHUP);
   pthread_sigmask(SIG_BLOCK, &signals, nullptr);
-  thread_ = std::jthread([this, signals, end_at_once = std::move(end_at_once)](const std::stop_token& end) {
+  const auto watch = [this, signals, end_at_once = std::move(end_at_once)](const std::stop_token& end) {
     int signal = 0;
     while (sigwait(&signals, &signal) == 0 && !end.stop_requested()) {
       if (stop_.stop_requested()) end_at_once();
       stop_.request_stop();
     }
-  });
+  };
+  try {
+    thread_ = std::jthread(watch);
+  } catch (const std::system_error& error) {
+    throw Error(fmt::format("no thread can be started: {}", error.code().message()));
+  }
 }
 
 SignalWatcher::~SignalWatcher() {

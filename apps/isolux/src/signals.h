@@ -10,6 +10,7 @@ namespace isolux {
 /// `end_at_once`, from a thread of its own. Made before any other thread.
 class SignalWatcher {
  public:
+  /// \throw Error where the system has no thread left
   explicit SignalWatcher(std::function<void()> end_at_once);
   ~SignalWatcher();
   SignalWatcher(const SignalWatcher&) = delete;

@@ -13,6 +13,8 @@
 namespace isolux {
 namespace {
 
+constexpr double kNoLimit = std::numeric_limits<double>::infinity();
+
 /// The bytes that a file of the system's says behind a word, in units of 1024.
 std::optional<std::uint64_t> bytes_behind(const char* file, const std::string& word) {
   std::ifstream in(file);
@@ -27,18 +29,20 @@ std::optional<std::uint64_t> bytes_behind(const char* file, const std::string& w
 
 double machine_memory() {
   const double bytes = double(sysconf(_SC_PHYS_PAGES)) * double(sysconf(_SC_PAGE_SIZE));
-  return std::min(bytes > 0.0 ? bytes : std::numeric_limits<double>::infinity(), group_memory("/").most);
+  return std::min(bytes > 0.0 ? bytes : kNoLimit, group_memory("/").most);
 }
 
-double free_memory() {
-  constexpr double kNoLimit = std::numeric_limits<double>::infinity();
-  const auto available = bytes_behind("/proc/meminfo", "MemAvailable:");
-  // `ulimit -v`: of addresses, but hardly anything has more of these than it uses.
+double free_addresses() {
   rlimit own{};
   const auto taken = bytes_behind("/proc/self/status", "VmSize:");
   const bool is_limited = getrlimit(RLIMIT_AS, &own) == 0 && own.rlim_cur != RLIM_INFINITY && taken;
-  return std::min({available ? double(*available) : kNoLimit, group_memory("/").left,
-                   is_limited ? std::max(0.0, double(own.rlim_cur) - double(*taken)) : kNoLimit});
+  return is_limited ? std::max(0.0, double(own.rlim_cur) - double(*taken)) : kNoLimit;
+}
+
+double free_memory() {
+  const auto available = bytes_behind("/proc/meminfo", "MemAvailable:");
+  // Hardly anything has more addresses than it uses.
+  return std::min({available ? double(*available) : kNoLimit, group_memory("/").left, free_addresses()});
 }
 
 std::uint64_t peak_memory() {

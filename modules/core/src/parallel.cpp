@@ -13,6 +13,8 @@
 #include <optional>
 #include <vector>
 
+#include "startable_threads.h"
+
 namespace isolux {
 namespace {
 
@@ -93,7 +95,7 @@ void parallel_blocks(std::size_t count, std::size_t block_size, const Run& run, 
     if (lock.owns_lock()) run.progress(stage, double(now) / double(blocks));
   };
   // More threads than blocks would only be started and ended, for every loop again.
-  const int threads = int(std::min(std::size_t(thread_count(run)), blocks));
+  const int threads = detail::startable_threads(int(std::min(std::size_t(thread_count(run)), blocks)));
   if (threads <= 1) {
     for (std::size_t b = 0; b < blocks; ++b) work(b);
   } else {

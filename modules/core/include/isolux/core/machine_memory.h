@@ -12,6 +12,9 @@ namespace isolux {
 /// Infinite likewise.
 [[nodiscard]] double free_memory();
 
+/// What `ulimit -v` leaves this process of addresses; infinite without.
+[[nodiscard]] double free_addresses();
+
 /// The most bytes of memory that this process has had at once.
 [[nodiscard]] std::uint64_t peak_memory();
 
