@@ -174,10 +174,10 @@ void extract(const Subject& subject, const BackendChoice& choice, const ExtractO
     warn_outside_light(*light, there, session,
                        options.exact_light ? "it is no help to --exact-light" : "what is shown is not its light");
   MeshMaker maker = session.timed("extract", [&] { return MeshMaker(volume, choice, outputs.size(), session); });
-  IsoMesh mesh;
   for_each_surface(outputs, session, [&](std::size_t number) {
     const float isovalue = isovalues[number];
-    session.timed("extract", [&] { maker.extract(surfaces[number], mesh); });
+    const auto extracted = [&]() -> const IsoMesh& { return maker.extract(surfaces[number]); };
+    const IsoMesh& mesh = session.timed("extract", extracted);
     const VertexLight shown = lighter ? lighter->light(mesh, isovalue) : VertexLight();
     write_lit_mesh(mesh, shown, volume, isovalue, outputs[number], options, session);
     report_mesh(mesh, outputs.size() > 1 ? outputs[number] + ": " : "", session);

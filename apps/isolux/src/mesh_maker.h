@@ -18,14 +18,15 @@ class MeshMaker {
   /// \throw InvalidInput as Registry::create
   MeshMaker(const VolumeView& volume, const BackendChoice& choice, std::size_t meshes, const Session& session);
 
-  /// \throw as Extractor::extract
-  void extract(const ExtractSettings& settings, IsoMesh& mesh);
+  /// The mesh is there until the next call. \throw as Extractor::extract
+  [[nodiscard]] const IsoMesh& extract(const ExtractSettings& settings);
 
  private:
   VolumeView volume_;
   const Run& run_;
   std::unique_ptr<Extractor> extractor_;
   std::optional<IsoExtractor> sweep_;
+  std::unique_ptr<IsoMesh> mesh_;
 };
 
 }  // namespace isolux

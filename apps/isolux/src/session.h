@@ -42,7 +42,7 @@ class Session {
 
   /// Runs `work`, counting its seconds under `stage` in the report.
   template <class Work>
-  auto timed(const std::string& stage, Work&& work) {
+  decltype(auto) timed(const std::string& stage, Work&& work) {
     const Stopwatch watch;
     struct Guard {
       Session& session;

@@ -85,6 +85,12 @@ void link_border(IsoMesh& mesh) {
 }  // namespace
 
 IsoMesh build_mesh(const IndexedMesh& indexed) {
+  IsoMesh mesh;
+  build_mesh(indexed, mesh);
+  return mesh;
+}
+
+void build_mesh(const IndexedMesh& indexed, IsoMesh& mesh) {
   const std::size_t vertices = indexed.positions.size();
   const std::size_t faces = indexed.triangles.size();
   if (6 * faces > std::size_t(std::numeric_limits<int>::max()))
@@ -92,7 +98,7 @@ IsoMesh build_mesh(const IndexedMesh& indexed) {
   const Corners corners{indexed.triangles};
   Index edges = 0;
   const std::vector<Index> half_edge = number_half_edges(corners, Leaving(corners, vertices), edges);
-  IsoMesh mesh;
+  mesh.clear();
   mesh.resize(vertices, edges, faces);
   for (std::size_t v = 0; v < vertices; ++v) {
     const VertexHandle handle{int(v)};
@@ -110,7 +116,6 @@ IsoMesh build_mesh(const IndexedMesh& indexed) {
     if (c % 3 == 0) mesh.set_halfedge_handle(FaceHandle(int(c / 3)), h);
   }
   link_border(mesh);
-  return mesh;
 }
 
 namespace {

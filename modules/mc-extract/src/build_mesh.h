@@ -9,6 +9,9 @@ namespace isolux::mc {
 /// paired through the lists of half-edges leaving each vertex, in linear time. \throw InvalidInput if an edge has more
 /// than two faces or two faces disagree on its direction, or if there are too many half-edges for OpenMesh.
 [[nodiscard]] IsoMesh build_mesh(const IndexedMesh& indexed);
+/// The same into `mesh`, of which nothing is kept: OpenMesh moves no mesh, and a copy for which memory ends frees what
+/// is not its own.
+void build_mesh(const IndexedMesh& indexed, IsoMesh& mesh);
 
 /// Replaces the normals by the area-weighted means of the adjacent faces' (their cross products are summed). A vertex
 /// whose faces cancel keeps the one it had.

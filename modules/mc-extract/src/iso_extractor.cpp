@@ -29,7 +29,7 @@ class IsoExtractor::Implementation {
     if (settings.cap != CapKind::kNone || settings.min_component > 0) {
       IndexedMesh indexed;
       extract(settings, run, indexed);
-      mesh = mc::build_mesh(indexed);
+      mc::build_mesh(indexed, mesh);
       return;
     }
     const mc::MeshSize size = march_.count(settings, run, index(), mc::vertex_room(mesh));

@@ -145,6 +145,20 @@ TEST(IsoExtractor, UsesAMeshAgainWithoutATrace) {
   }
 }
 
+TEST(IsoExtractor, UsesAMeshAgainWhereItRebuilds) {
+  const Volume volume = gyroid(20);
+  IsoExtractor extractor(volume);
+  IsoMesh kept;
+  for (const float isovalue : {0.0f, 1.2f, 9.0f, 0.7f}) {
+    for (const CapKind cap : {CapKind::kBox, CapKind::kNone}) {
+      const ExtractSettings settings{.isovalue = isovalue, .cap = cap, .min_component = 3};
+      extractor.extract(settings, {}, kept);
+      EXPECT_TRUE(identical(kept, extractors().create("marching_cubes")->extract(volume, settings, {}))) << isovalue;
+      EXPECT_TRUE(is_manifold(kept));
+    }
+  }
+}
+
 // With fewer edges a mesh may have more vertices, and so on.
 TEST(IsoExtractor, UsesAMeshAgainWhateverItHasMoreOf) {
   int grown[3] = {};
