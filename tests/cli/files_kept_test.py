@@ -112,6 +112,9 @@ class DanglingLinks(CommandLineTest):
         self.succeed("convert", "gen:sphere:4", "link.nrrd")
         self.assertTrue(os.path.islink(self.path("link.nrrd")))
         self.assertTrue(self.read("there.nrrd").startswith(b"NRRD"))
+        os.symlink("content", self.path("mesh.ply"))  # whose name has no ending: that of the link says the format
+        self.succeed("extract", "gen:sphere:8", "--iso", -0.3, "-o", "mesh.ply")
+        self.assertTrue(self.read("content").startswith(b"ply\n"))
         self.fail(2, "bake", "gen:sphere:4", "-o", "new.nrrd", "--report", self.link_to("new.nrrd"), says="--output is written there")
 
     def link_to(self, name):

@@ -38,6 +38,57 @@ class SmallMemory(CommandLineTest):
         self.assertTrue(0.5 < report["memory_bytes_foreseen"] / report["peak_memory_bytes"] < 1.5, report)
 
 
+    def test_ends_every_extraction_in_one_line(self):
+        """Wherever memory ends: a mesh is made of many arrays."""
+        def run(megabytes):
+            limit = lambda: resource.setrlimit(resource.RLIMIT_AS, (megabytes << 20, megabytes << 20))
+            command = [ISOLUX, "extract", "gen:noise:40", "--iso", "0.5", "-o", "mesh.ply", "--quiet"]
+            return subprocess.run(command, cwd=self.folder, capture_output=True, text=True, preexec_fn=limit)
+        if run(1 << 10).returncode != 0:
+            self.skipTest("the program, as it is built, takes more addresses than that for itself")
+        os.remove(self.path("mesh.ply"))
+        least, enough = 20, 1 << 10
+        while enough - least > 1:
+            middle = (least + enough) // 2
+            least, enough = (least, middle) if run(middle).returncode == 0 else (middle, enough)
+        os.remove(self.path("mesh.ply"))
+        for megabytes in range(enough - 16, enough, 2):
+            done = run(megabytes)
+            if done.returncode != 0:
+                self.assertEqual(done.returncode, 1, f"{megabytes} MB: {done.stderr}")
+                self.assertRegex(done.stderr, r"^isolux: error: extract: [^\n]*\n$")
+                self.assertEqual(os.listdir(self.folder), [])
+
+
+class FewThreads(CommandLineTest):
+    """What a system does not let a program start it has to do without."""
+
+    def test_by_memory_for_their_stacks_do_the_work_of_many(self):
+        def run(output, threads):
+            command = [ISOLUX, "bake", "gen:noise:40", "-o", output, "--rays", "1", "--quiet", "--threads", str(threads)]
+            limit = lambda: resource.setrlimit(resource.RLIMIT_AS, (400 << 20, 400 << 20))
+            return subprocess.run(command, cwd=self.folder, capture_output=True, text=True, preexec_fn=limit)
+        if run("few.nrrd", 2).returncode != 0:
+            self.skipTest("the program, as it is built, takes more addresses than that for itself")
+        done = run("many.nrrd", 2000)
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
+        self.assertEqual(self.read("many.nrrd"), self.read("few.nrrd"))
+
+    def test_of_one_are_said_in_one_line(self):
+        def one_process():
+            if os.getuid() == 0:  # whom this limit does not hold
+                os.setgid(65534)
+                os.setuid(65534)
+            resource.setrlimit(resource.RLIMIT_NPROC, (1, 1))
+        try:
+            done = subprocess.run([ISOLUX, "info", "gen:sphere:4"], capture_output=True, text=True, preexec_fn=one_process)
+        except PermissionError:
+            self.skipTest("the program is where others may not run it")
+        if done.returncode != 0:  # no thread at all; elsewhere a user may have one
+            self.assertEqual(done.returncode, 1, done.stderr)
+            self.assertRegex(done.stderr, r"^isolux: error: [\w ]+: no thread can be started: [^\n]*\n$")
+
+
 class FullDisk(CommandLineTest):
     def test_leaves_an_error_that_names_the_file_and_no_half_file(self):
         self.succeed("bake", "gen:sphere:16", "-o", "light.nrrd", "--rays", 1, "--quiet")
@@ -136,6 +187,17 @@ class OpenFiles(CommandLineTest):
             log.write(b"last")
         self.assertEqual(self.read("log"), b"first" + self.read("scan.nrrd") + b"last")
         self.assertTrue(os.path.islink(self.path("out.nrrd")))
+
+    def test_get_meshes_by_way_of_a_file_that_does_not_stay(self):
+        os.symlink("/dev/stdout", self.path("mesh.ply"))
+        os.mkdir(self.path("temporary"))
+        command = f"TMPDIR=%s '{ISOLUX}' extract gen:noise:32 --iso 0.5 -o mesh.ply --quiet"
+        went_away = subprocess.run((command % "temporary") + " | head -c 1", shell=True, cwd=self.folder, stdout=subprocess.PIPE, check=True)
+        self.assertEqual(went_away.stdout, b"p")
+        self.assertEqual(os.listdir(self.path("temporary")), [])
+        nowhere = subprocess.run(command % "nowhere", shell=True, cwd=self.folder, capture_output=True, text=True)
+        self.assertEqual((nowhere.returncode, nowhere.stdout), (1, ""))
+        self.assertRegex(nowhere.stderr, r"^isolux: error: extract: mesh\.ply: [^\n]*TMPDIR[^\n]*\n$")
 
     def test_in_a_linked_folder_have_their_data_beside_them(self):
         os.mkdir(self.path("real"))

@@ -33,10 +33,11 @@ Begun& begun() {
 }
 
 // A file beside `target` that nobody else has, removed unless renamed. Its mode is that of the file there, or follows
-// the umask.
+// the umask. Libraries choose the format by the end of its name, which is that of `name`.
 class Temporary {
  public:
-  explicit Temporary(const fs::path& target) : target_(target) {
+  explicit Temporary(const fs::path& target) : Temporary(target, target) {}
+  Temporary(const fs::path& target, const fs::path& name) : target_(target) {
     static std::atomic<unsigned> counter{0};
     const fs::path folder = target.has_parent_path() ? target.parent_path() : fs::path(".");
     std::error_code error;
@@ -48,8 +49,7 @@ class Temporary {
     if (fs::is_directory(target, error)) throw IoError(fmt::format("{}: a directory", target.string()));
     if (fs::exists(target, error) && access(target.c_str(), W_OK) != 0)
       throw IoError(fmt::format("{}: cannot be written: {}", target.string(), std::strerror(errno)));
-    // The name's end stays last: libraries choose the format by it.
-    std::string end = target.filename().string();
+    std::string end = name.filename().string();
     if (end.size() > kLongestEnd) end.erase(0, end.size() - kLongestEnd);
     const std::lock_guard lock(begun().mutex);
     for (int attempt = 0; attempt < 100; ++attempt) {
@@ -143,10 +143,17 @@ bool is_special(const fs::path& target) {
 // For a library that opens files by name, which would begin an open one anew.
 void write_by_way_of_a_file(int descriptor, const std::string& path,
                             const std::function<void(const std::string& temporary)>& write) {
-  const Temporary file(fs::temp_directory_path() / fs::path(path).filename());
-  write(file.path().string());
+  std::error_code error;
+  const fs::path folder = fs::temp_directory_path(error);
+  if (error) throw IoError(fmt::format("{}: no folder for a temporary file: see TMPDIR", path));
+  std::ifstream content;
+  {
+    const Temporary file(folder / fs::path(path).filename());
+    write(file.path().string());
+    content.open(file.path(), std::ios::binary);
+  }  // and is removed before a reader goes away, which ends the program at once
+  if (!content) throw IoError(fmt::format("{}: its temporary file cannot be read", path));
   fill_open_file(descriptor, path, [&](std::ostream& out) {
-    std::ifstream content(file.path(), std::ios::binary);
     if (content.peek() != std::ifstream::traits_type::eof()) out << content.rdbuf();
   });
 }
@@ -198,8 +205,8 @@ void write_atomically(const std::string& path, const std::function<void(std::ost
 void write_atomically_by_name(const std::string& path, const std::function<void(const std::string& temporary)>& write) {
   const fs::path target = written_file(path);
   if (const auto descriptor = descriptor_of(target)) return write_by_way_of_a_file(*descriptor, path, write);
-  if (is_special(target)) return write(target.string());
-  Temporary temporary(target);
+  if (is_special(target)) return write(path);
+  Temporary temporary(target, path);
   const std::string name = temporary.path().string();
   try {
     write(name);

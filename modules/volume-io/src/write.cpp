@@ -68,9 +68,16 @@ void write_detached(const VolumeView& volume, const std::string& path, const Wri
   auto image = nrrd_image(volume, options);
   const std::string data = data_file_of(header_at(path), options);
   image.data_file = fs::path(data).filename().string();
+  std::error_code error;
+  const bool was_there = fs::exists(data, error);
   // The data first: a header never points to nothing.
   write_atomically(data, [&](std::ostream& out) { detail::write_nrrd_values(out, image, volume.voxels()); });
-  write_atomically(path, [&](std::ostream& out) { detail::write_nrrd_header(out, image); });
+  try {
+    write_atomically(path, [&](std::ostream& out) { detail::write_nrrd_header(out, image); });
+  } catch (...) {
+    if (!was_there) fs::remove(data, error);  // which no header names: it would be in the way of the next try
+    throw;
+  }
 }
 
 void write_headerless(const VolumeView& volume, const std::string& path) {

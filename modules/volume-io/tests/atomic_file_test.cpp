@@ -59,6 +59,24 @@ TEST(AtomicFile, FollowsTheUmaskAndSymbolicLinks) {
   EXPECT_EQ(test::read_file(folder.file("a")), "2");
 }
 
+TEST(AtomicFile, EndsByNameAsItWasAskedForWhereverLinksLead) {
+  const test::TemporaryFolder folder;
+  for (const std::string& target : {folder.file("blob"), folder.file("other.stl"), std::string("/dev/null")}) {
+    std::filesystem::remove(folder.file("link.ply"));
+    std::filesystem::create_symlink(target, folder.file("link.ply"));
+    std::string named;
+    write_atomically_by_name(folder.file("link.ply"), [&](const std::string& name) {
+      named = name;
+      std::ofstream(name) << "content";
+    });
+    EXPECT_TRUE(named.ends_with("link.ply")) << named;
+    EXPECT_TRUE(std::filesystem::is_symlink(folder.file("link.ply")));
+    if (target != "/dev/null") {
+      EXPECT_EQ(test::read_file(target), "content");
+    }
+  }
+}
+
 TEST(AtomicFile, KeepsLinksThatLeadToNoFileYet) {
   const test::TemporaryFolder folder;
   std::filesystem::create_symlink("second", folder.file("first"));

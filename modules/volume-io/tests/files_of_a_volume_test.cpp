@@ -56,6 +56,14 @@ TEST(DetachedNrrd, ReplacesNoDataButItsOwn) {
   EXPECT_EQ(refused(), "") << "its own data";
 }
 
+TEST(DetachedNrrd, LeavesNoDataWithoutTheHeader) {
+  if (!std::filesystem::exists("/dev/full")) GTEST_SKIP() << "there is no /dev/full here";
+  const test::TemporaryFolder folder;
+  std::filesystem::create_symlink("/dev/full", folder.file("d.nhdr"));
+  EXPECT_THAT(test::error_of([&] { write_volume(small(), folder.file("d.nhdr")); }), HasSubstr("writing failed"));
+  EXPECT_EQ(folder.entries(), 1u);
+}
+
 TEST(DetachedNrrd, IsOnlyWrittenUnderNamesThatItsHeaderCanGiveItsData) {
   const test::TemporaryFolder folder;
   for (const std::string name : {" a.nhdr", "\ta.nhdr", "a\nb.nhdr", "a\rb.nhdr", "LIST a.nhdr", "a%d 1 2 3.nhdr"}) {

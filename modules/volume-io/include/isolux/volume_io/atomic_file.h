@@ -21,7 +21,7 @@ void require_writable(const std::string& path);
 void write_atomically(const std::string& path, const std::function<void(std::ostream&)>& write);
 
 /// The same for a library that wants a file name: `write` gets the temporary's path, which keeps the extension of
-/// `path`. An IoError of `write` that names the temporary names `path` instead.
+/// `path`, wherever links lead. An IoError of `write` that names the temporary names `path` instead.
 void write_atomically_by_name(const std::string& path, const std::function<void(const std::string& temporary)>& write);
 
 /// Removes the temporary files of this process, for a program that has to end at once. While the lock lives, none is
