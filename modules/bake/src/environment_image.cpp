@@ -102,6 +102,9 @@ ImageEnvironment read_environment_image(const std::string& path) {
   std::transform(extension.begin(), extension.end(), extension.begin(),
                  [](unsigned char c) { return char(std::tolower(c)); });
   ImageEnvironment image = extension == ".exr" ? read_exr_image(path) : read_with_stb(path);
+  if (image.pixels.empty())
+    throw InvalidInput(
+        fmt::format("{}: an image of {}x{} pixels; at least one is needed", path, image.width, image.height));
   for (const Vec3f& p : image.pixels) {
     if (!(p.x >= 0.0f && p.y >= 0.0f && p.z >= 0.0f && std::isfinite(p.x + p.y + p.z))) {
       throw InvalidInput(

@@ -205,6 +205,11 @@ TEST(RadianceEnvironment, ThatBreaksOffIsRefused) {
     EXPECT_FALSE(Picture(".hdr", whole.substr(0, size)).refusal().empty()) << size;
 }
 
+TEST(OtherEnvironment, WithoutPixelsIsRefusedByItsName) {
+  const Picture picture(".pgm", "P5 2 0 255\nab");
+  EXPECT_NE(picture.refusal().find(".pgm: an image of 2x0 pixels"), std::string::npos) << picture.refusal();
+}
+
 TEST(SceneFile, KeepsAllDigitsOfLampPlaces) {
   const Scene scene = parse_scene(
       R"({"lights":[{"type":"sphere","center":[100000000.25,-16777217,0.1],"radius":2,"radiance":[1,1,1]},

@@ -21,6 +21,12 @@ Volume rising_volume() {
   return volume;
 }
 
+TEST(Misuse, MessagesAreOneLineWhateverTheyQuote) {
+  using namespace std::string_literals;
+  const InvalidInput error("'a\nb\0c\x1b[1m\x7F\xC3\xA4' is no type"s);
+  EXPECT_STREQ(error.what(), "'a b c [1m \xC3\xA4' is no type");
+}
+
 TEST(Misuse, ValuesThatAreNotOneAPointAreRefused) {
   const Lattice lattice{.size = {4, 4, 4}, .frame = {}};
   EXPECT_THROW(Grid<float>(lattice, std::vector<float>(10)), InvalidInput);

@@ -190,6 +190,26 @@ std::uint64_t expect_same_hits(const Volume& volume, const char* name) {
   return proven;
 }
 
+/// The slope at the start is a hundred thousand times smaller than what brings rays back within the cell.
+TEST_P(WideKernel, FindsTheWayBackOfRaysThatHardlyLeave) {
+  const Volume volume =
+      sampled({.size = Index3(2), .frame = {}}, [](const Vec3& p) { return p.z * (p.y * (4.0 * p.x - 1.0) - 1e-5); });
+  const Sites sites{.positions = {Vec3f(0.0f)}, .isovalues = {0.0f}, .normals = {Vec3f(0.0f, 0.0f, 1.0f)}};
+  const LevelSetIntersector oracle(volume);
+  int hits = 0;
+  (void)gather(volume, sites, {.rays = 1024}, isolux::Run{.threads = 1}, [&](const GatheredRays& gathered) {
+    for (std::size_t i = 0; i < gathered.index_distance.size(); ++i) {
+      const Vec3 way(gathered.index_direction[0][i], gathered.index_direction[1][i], gathered.index_direction[2][i]);
+      const auto expected = oracle.next_hit(Vec3(0.0), way, 0.0f, OuterSide::kLower);
+      ASSERT_EQ(expected.has_value(), !gathered.escaped(i));
+      if (!expected) continue;
+      ++hits;
+      EXPECT_LT(std::abs(expected->t - double(gathered.index_distance[i])) * glm::length(way), 1e-4);  // as promised
+    }
+  });
+  EXPECT_GT(hits, 100);
+}
+
 TEST_P(WideKernel, ProvesOnlyWhatHits) {
   // Small volumes, so that sites are told apart by isovalue: each bucket is to pay for itself.
   EXPECT_GT(expect_same_hits(gyroid(24), "gyroid"), 0u);

@@ -48,18 +48,17 @@ HWY_INLINE Mask goes_inwards(const Deflated& p) {
   return hn::Or(hn::Gt(p.c[0], zero), hn::And(hn::Eq(p.c[0], zero), curves));
 }
 
-/// Lanes whose deflated polynomial, not positive just beyond 0, has a root in (0, t_end]; `root` gets the first.
+/// Lanes whose deflated polynomial, not positive just beyond 0, has a root in (0, t_end]; `root` gets the first. Of the
+/// two forms of the root the one that adds what has one sign: a ray may leave along its level set all but exactly.
 HWY_INLINE Mask next_root(const Deflated& p, Floats t_end, Floats& root) {
   const Floats zero = hn::Zero(kF);
   const Floats discriminant = hn::NegMulAdd(hn::Mul(hn::Set(kF, 4.0f), p.c[0]), p.c[2], hn::Mul(p.c[1], p.c[1]));
-  const Floats denominator = hn::Add(p.c[1], hn::Sqrt(hn::Max(discriminant, zero)));
-  root = hn::Div(hn::Mul(hn::Set(kF, -2.0f), p.c[0]), denominator);
-  Mask real = hn::And(hn::Ge(discriminant, zero), hn::Gt(denominator, zero));
-  const Mask tangent = hn::Eq(p.c[0], zero);
-  if (!hn::AllFalse(kF, tangent)) {
-    root = hn::IfThenElse(tangent, hn::Div(hn::Neg(p.c[1]), p.c[2]), root);
-    real = hn::Or(hn::AndNot(tangent, real), hn::And(tangent, hn::And(hn::Lt(p.c[1], zero), hn::Gt(p.c[2], zero))));
-  }
+  const Floats sum = hn::Add(hn::Abs(p.c[1]), hn::Sqrt(hn::Max(discriminant, zero)));
+  const Mask sinks = hn::Lt(p.c[1], zero);
+  const Floats numerator = hn::IfThenElse(sinks, sum, hn::Mul(hn::Set(kF, -2.0f), p.c[0]));
+  const Floats denominator = hn::IfThenElse(sinks, hn::Add(p.c[2], p.c[2]), sum);
+  root = hn::Div(numerator, denominator);
+  const Mask real = hn::And(hn::Ge(discriminant, zero), hn::Gt(denominator, zero));
   return hn::And(real, hn::Le(root, t_end));
 }
 

@@ -8,7 +8,7 @@ namespace isolux {
 /// Base of everything isolux throws. The message is one line: what was given and what is allowed.
 class Error : public std::runtime_error {
  public:
-  /// Zero bytes of a broken file's text become blanks: what() would end there.
+  /// Control characters of a broken file's text become blanks: it would end at a zero, or be several lines.
   explicit Error(std::string message);
 };
 
