@@ -29,7 +29,7 @@ template <class Work>
     return false;
   } catch (const Error& error) {
     const std::string_view what = error.what();
-    require(!what.empty() && what.find('\n') == std::string_view::npos, "an error is one line");
+    require(!what.empty() && what.find('\n') == std::string_view::npos, "an error is one line: " + std::string(what));
     return true;
   }
 }

@@ -1,9 +1,10 @@
 // Texts that options of the commands take. The input's first letter says what for; each further line is a text.
 #include <isolux/bake/bake.h>
+#include <isolux/render/camera.h>
 #include <isolux/volume_io/analytic_fields.h>
 #include <isolux/volume_io/scalar_type.h>
 
-#include <CLI/App.hpp>
+#include <CLI/CLI.hpp>
 #include <cmath>
 
 #include "bake_command.h"
@@ -92,6 +93,9 @@ void picture(const std::vector<std::string>& texts) {
   const auto text = [&](std::size_t i, std::string& option) {
     if (i < texts.size()) option = texts[i];
   };
+  CLI::App command;
+  options.iso.add_to(command);
+  command.parse(std::vector<std::string>{"0.5", "--iso"});
   options.output = "a.png";
   text(0, options.view);
   text(1, options.up);
@@ -104,9 +108,7 @@ void picture(const std::vector<std::string>& texts) {
         options.require_pictures();
       }))
     return;
-  const Framing framing(volume().lattice());
-  const Camera camera = framing_camera(options.looking(), framing);
-  (void)camera;
+  (void)is_usage_error([&] { (void)orbit_camera(volume().lattice(), options.looking(), 1.5); });
 }
 
 void light(const std::vector<std::string>& texts) {
@@ -123,7 +125,8 @@ void light(const std::vector<std::string>& texts) {
   if (texts.size() > 5) options.set.assign(texts.begin() + 5, texts.end());
   BakeSettings settings;
   if (is_usage_error([&] { settings = bake_settings(options, stages()); })) return;
-  (void)is_usage_error([&] { (void)texel_lattice(volume().lattice(), with_defaults(settings, volume().lattice(), stages())); });
+  (void)is_usage_error(
+      [&] { (void)texel_lattice(volume().lattice(), with_defaults(settings, volume().lattice(), stages())); });
 }
 
 }  // namespace

@@ -4,6 +4,8 @@
 #include <isolux/raytrace_flat/gather.h>
 #include <isolux/raytrace_flat/level_set_intersector.h>
 
+#include <algorithm>
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
 #include "root_oracle.h"
@@ -19,7 +21,8 @@ constexpr double kNear = 1e-4;  ///< voxels: what the tracer's tests allow betwe
 void check_scalar(const Volume& volume, const LevelSetIntersector& scalar, const Vec3& origin, const Vec3& direction,
                   float isovalue, OuterSide outer) {
   const auto hit = scalar.next_hit(origin, direction, isovalue, outer);
-  require(hit.has_value() == scalar.is_occluded(origin, direction, isovalue, outer), "a shadow ray meets what a ray does");
+  require(hit.has_value() == scalar.is_occluded(origin, direction, isovalue, outer),
+          "a shadow ray meets what a ray does");
   if (hit) require(hit->t >= 0.0 && std::isfinite(hit->t), "a hit lies on its ray");
   const test::OracleAnswer answer = test::RootOracle(volume).next_hit(origin, direction, outer);
   if (!answer.decided) return;
@@ -46,6 +49,13 @@ Sites some_sites(fuzz::Bytes& bytes, const Volume& volume, OuterSide outer) {
   return sites;
 }
 
+/// A level set that touches the box's own face is met by rays just as they leave: a matter of the last bit.
+bool in_box_face(const Volume& volume, const Vec3& place) {
+  const Vec3 last(volume.lattice().size - 1);
+  const Vec3 margin = glm::min(place, last - place);
+  return std::min({margin.x, margin.y, margin.z}) < 1e-6;
+}
+
 /// Under a sky of 1, surfaces that reflect at most all of it are nowhere brighter.
 void check_light(const Volume& volume, const Sites& sites, OuterSide outer, const Run& run) {
   static const Registry<FlatTracer> registry = tracers();
@@ -59,6 +69,14 @@ void check_light(const Volume& volume, const Sites& sites, OuterSide outer, cons
   }
 }
 
+/// Light does not depend on the unit of values from 2^-100 to 2^118 (docs/tracer.md); zero is there at any.
+void bring_into_range(Volume& volume) {
+  for (float& value : volume.values.values()) {
+    if (std::abs(value) < 0x1p-100f) value = 0.0f;
+    value = std::clamp(value, -0x1p117f, 0x1p117f);
+  }
+}
+
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
@@ -67,7 +85,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const RayQuestion question = bytes.below(2) == 0 ? RayQuestion::kFirstHit : RayQuestion::kAnyHit;
   Run run = fuzz::alone();
   run.seed = bytes.next<std::uint16_t>();
-  const Volume volume = fuzz::small_volume(bytes, 5);
+  Volume volume = fuzz::small_volume(bytes, 5);
+  bring_into_range(volume);
   if (fuzz::refused([&] { require_usable(volume); })) return 0;
   const Sites sites = some_sites(bytes, volume, outer);
   const LevelSetIntersector scalar(volume);
@@ -78,7 +97,11 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
       const Vec3 way(rays.index_direction[0][i], rays.index_direction[1][i], rays.index_direction[2][i]);
       check_scalar(volume, scalar, origin, way, sites.isovalues[site], outer);
       const auto hit = scalar.next_hit(origin, way, sites.isovalues[site], outer);
-      require(hit.has_value() != rays.escaped(i), "wide kernels hit where the scalar intersector does");
+      if (hit.has_value() == rays.escaped(i)) {
+        const double t = hit ? hit->t : double(rays.index_distance[i]);
+        require(in_box_face(volume, origin + t * way), "wide kernels hit where the scalar intersector does");
+        continue;
+      }
       if (hit && question == RayQuestion::kFirstHit)
         require(std::abs(hit->t - double(rays.index_distance[i])) * glm::length(way) <= kNear,
                 "wide kernels hit at the place where the scalar intersector does");

@@ -8,6 +8,8 @@
 #include <fstream>
 #include <map>
 
+#include <ImfRgbaFile.h>
+
 #include "samples.h"
 #include "vti_of_vtk.h"
 
@@ -26,9 +28,10 @@ Seeds volumes() {
           {"gzip.nrrd", head + "encoding: gzip\n" + frame + "\n" + test::gzipped(ramp)},
           {"text.nrrd", head + "encoding: ascii\n" + frame + "\n" + numbers},
           {"detached.nhdr", head + "encoding: raw\n" + frame + "data file: data.raw\n"},
-          {"spacings.nrrd", "NRRD0001\ntype: float\ndimension: 4\nsizes: 1 2 2 2\nkinds: scalar domain domain domain\n"
-                            "spacings: nan 1 2 .5\nbyte skip: -1\nendian: big\nencoding: raw\n\n" +
-                                test::bytes_of(std::vector<float>{0, 1, 2, 3, 4, 5, 6, 7}, true)},
+          {"spacings.nrrd",
+           "NRRD0001\ntype: float\ndimension: 4\nsizes: 1 2 2 2\nkinds: scalar domain domain domain\n"
+           "spacings: nan 1 2 .5\nbyte skip: -1\nendian: big\nencoding: raw\n\n" +
+               test::bytes_of(std::vector<float>{0, 1, 2, 3, 4, 5, 6, 7}, true)},
           {"a.nii", test::nifti_sample()},
           {"big.nii", test::nifti_sample(true)},
           {"a.nii.gz", test::gzipped(test::nifti_sample())},
@@ -75,13 +78,25 @@ Seeds scenes() {
           {"image", R"({"environment":{"type":"image","file":"sky.hdr","up":[0,0,1]}})"}};
 }
 
+std::string exr_picture() {
+  const test::TemporaryFolder folder;
+  const std::array<Imf::Rgba, 4> pixels = {Imf::Rgba(1, 2, 4), Imf::Rgba(0, 0, 0), Imf::Rgba(.5, .5, .5), Imf::Rgba()};
+  const std::string path = folder.file("a.exr");
+  {
+    Imf::RgbaOutputFile file(path.c_str(), 2, 2, Imf::WRITE_RGB);
+    file.setFrameBuffer(pixels.data(), 1, 2);
+    file.writePixels(2);
+  }
+  return test::read_file(path);
+}
+
 Seeds pictures() {
   const std::string head = "#?RADIANCE\nEXPOSURE=2\nFORMAT=32-bit_rle_rgbe\n\n-Y 1 +X 8\n";
   std::string runs("\2\2\0\x8", 4);
   for (int c = 0; c < 4; ++c) runs += "\x88\x80";
   return {{"flat.hdr", head + std::string(32, '\x80')},
           {"runs.hdr", head + runs},
-          {"a.exr", "\x76\x2f\x31\x01"},
+          {"a.exr", exr_picture()},
           {"a.pgm", "P5 2 1 255\nab"},
           {"a.bmp", "BM"}};
 }
