@@ -8,8 +8,16 @@
 #include <malloc.h>
 #endif
 
-// Sanitizers bring allocators of their own.
-#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+// Sanitizers bring allocators of their own; GCC and Clang say differently that they are there.
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#define ISOLUX_SANITIZED
+#elif defined(__has_feature)
+#if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer)
+#define ISOLUX_SANITIZED
+#endif
+#endif
+
+#ifndef ISOLUX_SANITIZED
 namespace {
 constexpr std::size_t kLarge = std::size_t(1) << 20;
 }  // namespace

@@ -54,11 +54,21 @@ class StbFile {
   bool ended_early_ = false;
 };
 
+/// stb takes PGM and PPM of 16 bits for little endian, and greys among them for pixels of 8 bits, of which half as many
+/// bytes are there. \throw InvalidInput
+void refuse_wide_pnm(const std::string& path) {
+  char magic[2] = {};
+  std::ifstream(path, std::ios::binary).read(magic, 2);
+  if (magic[0] == 'P' && (magic[1] == '5' || magic[1] == '6') && stbi_is_16_bit(path.c_str()) != 0)
+    throw InvalidInput(fmt::format("{}: PGM and PPM of 16 bits are not supported; PNG of 16 bits is", path));
+}
+
 /// Radiance HDR as it was measured; 8-bit formats from sRGB, exactly (stb's own conversion is a plain power).
 ImageEnvironment read_with_stb(const std::string& path) {
   const auto srgb_to_linear = [](float v) {
     return v <= 0.04045f ? v / 12.92f : std::pow((v + 0.055f) / 1.055f, 2.4f);
   };
+  refuse_wide_pnm(path);
   ImageEnvironment image;
   int channels = 0;
   const bool hdr = stbi_is_hdr(path.c_str()) != 0;

@@ -210,6 +210,15 @@ TEST(OtherEnvironment, WithoutPixelsIsRefusedByItsName) {
   EXPECT_NE(picture.refusal().find(".pgm: an image of 2x0 pixels"), std::string::npos) << picture.refusal();
 }
 
+// The library read them beyond their end, and the others' bytes the wrong way round.
+TEST(OtherEnvironment, OfWidePnmIsRefused) {
+  for (const std::string magic : {"P5", "P6"}) {
+    EXPECT_NE(Picture(".pnm", magic + " 2 1 256\n" + std::string(12, 'a')).refusal().find("16 bits"),
+              std::string::npos);
+    EXPECT_EQ(Picture(".pnm", magic + " 2 1 255\n" + std::string(6, 'a')).read().pixels.size(), 2u) << magic;
+  }
+}
+
 TEST(SceneFile, KeepsAllDigitsOfLampPlaces) {
   const Scene scene = parse_scene(
       R"({"lights":[{"type":"sphere","center":[100000000.25,-16777217,0.1],"radius":2,"radiance":[1,1,1]},

@@ -64,8 +64,11 @@ ValueRange parse_isovalues(const std::string& path, const std::string& text) {
     throw InvalidInput(fmt::format("{}: isolux.iso_range '{}'; LOW:HIGH is wanted", path, text));
   }
   const std::string what = path + ": isolux.iso_range";
-  return {.low = float(parse_number(what, text.substr(0, colon))),
-          .high = float(parse_number(what, text.substr(colon + 1)))};
+  const ValueRange range{.low = float(parse_number(what, text.substr(0, colon))),
+                         .high = float(parse_number(what, text.substr(colon + 1)))};
+  if (!(std::isfinite(range.low) && std::isfinite(range.high) && range.low <= range.high))
+    throw InvalidInput(fmt::format("{} '{}': allowed are floats, LOW not above HIGH", what, text));
+  return range;
 }
 
 /// A light's sides, the outer one first.

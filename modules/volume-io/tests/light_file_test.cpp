@@ -236,6 +236,14 @@ TEST(LightFile, HasTheLayoutThatOtherReadersNeed) {
   EXPECT_LT(text.find("\nsizes:"), text.find("\nspace:"));
 }
 
+TEST(LightFile, RefusesRangesThatHoldNoIsovalue) {
+  const test::TemporaryFolder folder;
+  const std::string head = "NRRD0005\ntype: uint8\ndimension: 3\nsizes: 1 1 1\nencoding: raw\nisolux.iso_range:=";
+  for (const char* range : {"1e39:2e39", "-1e39:0", "1:0.5", "nan:1", "0:inf"})
+    EXPECT_NE(test::error_of([&] { (void)read_light(folder.write("l.nrrd", head + range + "\n\na")); }), "") << range;
+  EXPECT_EQ(read_light(folder.write("l.nrrd", head + "1:1\n\na")).grid.detail.isovalues->low, 1.0f);
+}
+
 TEST(LightFile, RefusesOtherLayoutsAndKeys) {
   const test::TemporaryFolder folder;
   const auto four =
