@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
+#include <cstdint>
 #include <filesystem>
 #include <fstream>
 #include <memory>
@@ -63,12 +64,24 @@ void refuse_wide_pnm(const std::string& path) {
     throw InvalidInput(fmt::format("{}: PGM and PPM of 16 bits are not supported; PNG of 16 bits is", path));
 }
 
+/// \throw IoError for pixels that no code makes of so few bytes: stb would take memory and time for all of them first.
+void require_pixels_in_file(const std::string& path) {
+  constexpr std::uint64_t kMostAByte = 8 * 1032;  // bits are pixels in PNG, of which deflate makes 1032 of one at most
+  const std::uint64_t bytes = std::filesystem::file_size(path);
+  int width = 0;
+  int height = 0;
+  if (stbi_info(path.c_str(), &width, &height, nullptr) == 0) return;  // whoever reads it says why
+  if (std::uint64_t(width) * std::uint64_t(height) / kMostAByte > bytes)
+    throw IoError(fmt::format("{}: the image ends early: {} bytes for {}x{} pixels", path, bytes, width, height));
+}
+
 /// Radiance HDR as it was measured; 8-bit formats from sRGB, exactly (stb's own conversion is a plain power).
 ImageEnvironment read_with_stb(const std::string& path) {
   const auto srgb_to_linear = [](float v) {
     return v <= 0.04045f ? v / 12.92f : std::pow((v + 0.055f) / 1.055f, 2.4f);
   };
   refuse_wide_pnm(path);
+  require_pixels_in_file(path);
   ImageEnvironment image;
   int channels = 0;
   const bool hdr = stbi_is_hdr(path.c_str()) != 0;

@@ -219,6 +219,11 @@ TEST(OtherEnvironment, OfWidePnmIsRefused) {
   }
 }
 
+TEST(OtherEnvironment, AsksForNoMoreMemoryThanTheFileIsWorth) {
+  const Picture picture(".pgm", "P5 16000 16000 255\nabcd");
+  EXPECT_NE(picture.refusal().find("23 bytes for 16000x16000 pixels"), std::string::npos) << picture.refusal();
+}
+
 TEST(SceneFile, KeepsAllDigitsOfLampPlaces) {
   const Scene scene = parse_scene(
       R"({"lights":[{"type":"sphere","center":[100000000.25,-16777217,0.1],"radius":2,"radiance":[1,1,1]},
