@@ -19,7 +19,7 @@ inline void choose_target(std::int64_t target) {
 /// Those that the kernels are compiled for, among those of this machine, the best first.
 [[nodiscard]] inline std::vector<std::int64_t> wide_targets() {
   std::vector<std::int64_t> all;
-  for (std::int64_t left = hwy::SupportedTargets() & HWY_TARGETS; left != 0; left &= left - 1)
+  for (std::int64_t left = HWY_SUPPORTED_TARGETS & HWY_TARGETS; left != 0; left &= left - 1)
     all.push_back(left & -left);
   return all;
 }

@@ -65,6 +65,11 @@ function(isolux_flags target)
   # to AVX3 and is a machine's own with -march=native; and those whose vectors have no fixed size.
   target_compile_definitions(${target} PRIVATE
     "HWY_DISABLED_TARGETS=(HWY_SSSE3|HWY_AVX3_DL|HWY_SVE|HWY_SVE2|HWY_SVE_256|HWY_SVE2_128|HWY_RVV)")
+  # Every 64-bit Arm has NEON, the one set left to it, so nothing is to be chosen at run time. Where Highway can choose, it compiles NEON for Arms
+  # with AES, and GCC refuses structs of its vectors: their implicit constructors are for any Arm.
+  if(CMAKE_SYSTEM_PROCESSOR MATCHES "^(aarch64|arm64)$")
+    target_compile_definitions(${target} PRIVATE TOOLCHAIN_MISS_SYS_AUXV_H)  # Highway's word for what it needs in order to choose
+  endif()
   # One search path for where it is built and where it is installed: CMake pads those it edits, and an empty entry means the current folder.
   set(path ${ISOLUX_LOADED_BUILD_DIR} ${CMAKE_BUILD_RPATH} ${CMAKE_INSTALL_RPATH})
   set_target_properties(${target} PROPERTIES BUILD_WITH_INSTALL_RPATH ON INSTALL_RPATH_USE_LINK_PATH ON INSTALL_RPATH "${path}")
