@@ -27,9 +27,9 @@ std::string cpu_info(const std::string& key) {
 }
 
 std::string vector_extensions() {
-  const std::string flags = " " + cpu_info("flags") + " ";
+  const std::string flags = " " + cpu_info("flags") + " " + cpu_info("Features") + " ";  // the latter on Arm
   std::string found;
-  for (const char* name : {"sse4_2", "avx2", "fma", "avx512f"}) {
+  for (const char* name : {"sse4_2", "avx2", "fma", "avx512f", "asimd"}) {
     if (flags.find(fmt::format(" {} ", name)) != std::string::npos) found += fmt::format(" {}", name);
   }
   return found;
