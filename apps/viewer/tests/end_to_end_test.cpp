@@ -87,9 +87,10 @@ TEST_F(IsoluxView, SaysInOneLineThatThereIsNoDisplay) {
 }
 
 TEST_F(IsoluxView, RefusesAWrongCommandLineBeforeItLooksForADisplay) {
-  for (const char* arguments : {"--no-such-option", "--size 10", "--size 100000x10", "--view 1", "--mode global",
-                                "--frames 0", "--iso nan", "--iso 2sigmas", "--iso 1,2", "--exposure inf",
-                                "--backend none", "--set k", "--spacing 1,1,1", "--screenshot ''", "--screenshot a.jpg", "''"}) {
+  for (const char* arguments :
+       {"--no-such-option", "--size 10", "--size 100000x10", "--view 1", "--mode global", "--frames 0", "--iso nan",
+        "--iso 2sigmas", "--iso 1,2", "--exposure inf", "--backend none", "--set k", "--spacing 1,1,1",
+        "--screenshot ''", "--screenshot a.jpg", "''"}) {
     EXPECT_EQ(run("env -u DISPLAY", arguments), 2) << arguments;
     EXPECT_EQ(said().rfind("isolux: error: view: ", 0), 0u) << said();
   }

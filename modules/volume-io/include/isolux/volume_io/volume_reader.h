@@ -38,7 +38,7 @@ struct ReadOptions {
   std::optional<RawLayout> raw;  ///< dims, type and endianness of a headerless file
   bool big_endian = false;       ///< of a headerless file whose name says the rest
   std::optional<Vec3> spacing;   ///< replaces the file's spacing, world units; needed where a format has none
-  double subtract = 0.0;  ///< finite; taken off each value before it becomes a float: what is left is float32
+  double subtract = 0.0;         ///< finite; taken off each value before it becomes a float: what is left is float32
   /// Numbers of the file, scaled where it says so, that stand for none: they become NaN, and all others floats.
   /// Where there is none, Volume::remarks says so.
   std::optional<double> nodata{};
