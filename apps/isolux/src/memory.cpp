@@ -1,20 +1,12 @@
 #include "memory.h"
 
 #include <isolux/core/huge_pages.h>
+#include <isolux/core/sanitized.h>
 
 #include <cstdlib>
 
 #ifdef __GLIBC__
 #include <malloc.h>
-#endif
-
-// Sanitizers bring allocators of their own; GCC and Clang say differently that they are there.
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-#define ISOLUX_SANITIZED
-#elif defined(__has_feature)
-#if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer)
-#define ISOLUX_SANITIZED
-#endif
 #endif
 
 #ifndef ISOLUX_SANITIZED

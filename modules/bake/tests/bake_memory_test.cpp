@@ -1,6 +1,7 @@
 // What a bake takes beside the volume and its light, counted where memory is asked for: every `new` of this program.
 #include <gtest/gtest.h>
 #include <isolux/bake.h>
+#include <isolux/core/sanitized.h>
 #include <isolux/volume_io/read.h>
 
 #include <atomic>
@@ -10,8 +11,7 @@
 #include <optional>
 #include <utility>
 
-// Sanitizers bring allocators of their own.
-#if defined(__GLIBC__) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+#if defined(__GLIBC__) && !defined(ISOLUX_SANITIZED)
 #include <malloc.h>
 #define ISOLUX_COUNTS_MEMORY 1
 
