@@ -37,7 +37,6 @@ class SmallMemory(CommandLineTest):
         report = self.report("r.json")
         self.assertTrue(0.5 < report["memory_bytes_foreseen"] / report["peak_memory_bytes"] < 1.5, report)
 
-
     def test_ends_every_extraction_in_one_line(self):
         """Wherever memory ends: a mesh is made of many arrays."""
         def run(megabytes):
