@@ -88,20 +88,21 @@ void isovalues(const std::string& text) {
   });
 }
 
+void take(const std::vector<std::string>& texts, std::size_t i, std::string& option) {
+  if (i < texts.size()) option = texts[i];
+}
+
 void picture(const std::vector<std::string>& texts) {
   RenderOptions options;
-  const auto text = [&](std::size_t i, std::string& option) {
-    if (i < texts.size()) option = texts[i];
-  };
   CLI::App command;
   options.iso.add_to(command);
   command.parse(std::vector<std::string>{"0.5", "--iso"});
   options.output = "a.png";
-  text(0, options.view);
-  text(1, options.up);
-  text(2, options.background);
-  text(3, options.size);
-  text(4, options.eye);
+  take(texts, 0, options.view);
+  take(texts, 1, options.up);
+  take(texts, 2, options.background);
+  take(texts, 3, options.size);
+  take(texts, 4, options.eye);
   if (is_usage_error([&] {
         (void)options.looking();
         (void)options.background_colour();
@@ -113,15 +114,12 @@ void picture(const std::vector<std::string>& texts) {
 
 void light(const std::vector<std::string>& texts) {
   BakeOptions options;
-  const auto text = [&](std::size_t i, std::string& option) {
-    if (i < texts.size()) option = texts[i];
-  };
   options.output = "a.nrrd";
-  text(0, options.iso_range);
-  text(1, options.texels);
-  text(2, options.resampler);
-  text(3, options.sampler);
-  text(4, options.sites);
+  take(texts, 0, options.iso_range);
+  take(texts, 1, options.texels);
+  take(texts, 2, options.resampler);
+  take(texts, 3, options.sampler);
+  take(texts, 4, options.sites);
   if (texts.size() > 5) options.set.assign(texts.begin() + 5, texts.end());
   BakeSettings settings;
   if (is_usage_error([&] { settings = bake_settings(options, stages()); })) return;

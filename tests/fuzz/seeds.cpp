@@ -1,6 +1,7 @@
 // Writes what each fuzz target begins with: isolux_fuzz_seeds FOLDER makes FOLDER/TARGET/NAME.
 #include <isolux/bake/bake.h>
 #include <isolux/bake/light_metadata.h>
+#include <isolux/bake/scene_file.h>
 
 #include <cstdio>
 #include <cstring>
@@ -68,14 +69,20 @@ Seeds foreign() {
 }
 
 Seeds scenes() {
-  return {{"empty", "{}"},
-          {"uniform", R"({"environment":{"type":"uniform","radiance":[1,.5,.25]},"albedo":[.8,.7,.6],"sides":"both"})"},
-          {"sky", R"({"environment":{"type":"sky","up":[0,1,0],"zenith":[1,1,1],"horizon":[.5,.5,.5],)"
-                  R"("ground":[0,0,0]},"outer":"higher","albedo":[[0,[.1,.2,.3]],[1,[.4,.5,.6]]],"emission":[0,0,1]})"},
-          {"lights", R"({"lights":[{"type":"sun","direction":[0,0,1],"irradiance":[3,3,3],"angular_diameter_deg":1},)"
-                     R"({"type":"sphere","center":[0,0,2],"radius":.5,"radiance":[1,1,1]},)"
-                     R"({"type":"rectangle","center":[0,0,2],"u":[1,0,0],"v":[0,1,0],"radiance":[1,1,1]}]})"},
-          {"image", R"({"environment":{"type":"image","file":"sky.hdr","up":[0,0,1]}})"}};
+  const Seeds seeds = {
+      {"empty", "{}"},
+      {"uniform", R"({"environment":{"type":"uniform","radiance":[1,0.5,0.25]},"sides":"both",)"
+                  R"("albedo":[0.8,0.7,0.6]})"},
+      {"sky", R"({"environment":{"type":"sky","up":[0,1,0],"zenith":[1,1,1],"horizon":[0.5,0.5,0.5],)"
+              R"("ground":[0,0,0]},"outer":"higher","emission":[0,0,1],)"
+              R"("albedo":{"by_isovalue":[[0,0.1,0.2,0.3],[1,0.4,0.5,0.6]]}})"},
+      {"lights", R"({"lights":[{"type":"sun","direction":[0,0,1],"irradiance":[3,3,3],"angular_diameter_deg":1},)"
+                 R"({"type":"sphere","center":[0,0,2],"radius":0.5,"radiance":[1,1,1]},)"
+                 R"({"type":"rectangle","center":[0,0,2],"u":[1,0,0],"v":[0,1,0],"radiance":[1,1,1]}]})"},
+      {"image", R"({"environment":{"type":"image","file":"sky.hdr","up":[0,0,1]}})"}};
+  for (const auto& [name, text] : seeds)
+    if (name != "image") (void)parse_scene(text, "", name);  // a seed that is refused leads nowhere
+  return seeds;
 }
 
 std::string exr_picture() {

@@ -26,6 +26,14 @@ namespace fs = std::filesystem;
 
 const std::string kDisplay = "timeout 120 xvfb-run -a -e /dev/null -s '-screen 0 640x480x24'";
 
+/// Black, a texel a cell.
+LightFile light_of(const Volume& volume) {
+  LightFile light;
+  light.grid = IlluminationGrid(cell_lattice(volume.lattice()), 1);
+  light.metadata["isolux.volume_sha256"] = volume_sha256(volume);
+  return light;
+}
+
 class IsoluxView : public testing::Test {
  protected:
   void SetUp() override {
@@ -55,12 +63,12 @@ class IsoluxView : public testing::Test {
     std::ifstream(path("status")) >> status;
     return status;
   }
-  [[nodiscard]] std::string said() const {
-    std::ifstream file(path("err"));
+  [[nodiscard]] std::string content(const std::string& name) const {
     std::ostringstream text;
-    text << file.rdbuf();
+    text << std::ifstream(path(name)).rdbuf();
     return text.str();
   }
+  [[nodiscard]] std::string said() const { return content("err"); }
 
   struct Picture {
     int width = 0;
@@ -104,10 +112,9 @@ TEST_F(IsoluxView, FindsOutFirstThatAPictureHasNoPlace) {
 TEST_F(IsoluxView, WritesItsReport) {
   if (!has_xvfb()) GTEST_SKIP() << "xvfb-run or xauth is not installed";
   ASSERT_EQ(run_with_display("gen:sphere:8 --iso -.3 --frames 1 --size 64x64 --report " + path("r.json")), 0) << said();
-  std::ostringstream report;
-  report << std::ifstream(path("r.json")).rdbuf();
+  const std::string report = content("r.json");
   for (const char* key : {"\"seconds\"", "\"read\"", "\"total\"", "\"peak_memory_bytes\"", "\"isovalue\": -0.3,"})
-    EXPECT_NE(report.str().find(key), std::string::npos) << report.str();
+    EXPECT_NE(report.find(key), std::string::npos) << report;
 }
 
 TEST_F(IsoluxView, EndsCleanlyWhenInterrupted) {
@@ -125,10 +132,8 @@ TEST_F(IsoluxView, EndsCleanlyWhenInterrupted) {
 TEST_F(IsoluxView, DrawsLocalAndGlobalLightAndLeaves) {
   if (!has_xvfb()) GTEST_SKIP() << "xvfb-run or xauth is not installed";
   const Volume volume = read_volume("gen:sphere:24");
-  LightFile light;
-  light.grid = IlluminationGrid(cell_lattice(volume.lattice()), 1);
+  LightFile light = light_of(volume);
   for (std::size_t i = 0; i < light.grid.values.size(); ++i) light.grid.values[i] = (i / 23) % 23 < 12 ? 0.1f : 0.9f;
-  light.metadata["isolux.volume_sha256"] = volume_sha256(volume);
   write_light(light, path("light.nrrd"), volume.space);
   for (const char* mode : {"local", "global", "both"}) {
     const std::string picture_path = path(std::string(mode) + ".png");
@@ -144,9 +149,8 @@ TEST_F(IsoluxView, DrawsLocalAndGlobalLightAndLeaves) {
   ASSERT_EQ(local.height, 200);
   EXPECT_GT(std::set<unsigned char>(local.rgb.begin(), local.rgb.end()).size(), 30u) << "a shaded ball has many greys";
   std::size_t differing = 0;
-  for (std::size_t i = 0; i < local.rgb.size(); ++i) {
+  for (std::size_t i = 0; i < local.rgb.size(); ++i)
     if (std::abs(int(local.rgb[i]) - int(global.rgb[i])) > 10) ++differing;
-  }
   EXPECT_GT(differing, local.rgb.size() / 20);
   const Picture both = picture("both.png");
   ASSERT_EQ(both.rgb.size(), local.rgb.size());
@@ -157,11 +161,9 @@ TEST_F(IsoluxView, DrawsLocalAndGlobalLightAndLeaves) {
 TEST_F(IsoluxView, DrawsLocalLightWhereTheLightIsOfOtherIsovalues) {
   if (!has_xvfb()) GTEST_SKIP() << "xvfb-run or xauth is not installed";
   const Volume volume = read_volume("gen:sphere:48");
-  LightFile light;
-  light.grid = IlluminationGrid(cell_lattice(volume.lattice()), 1);
+  LightFile light = light_of(volume);
   std::fill(light.grid.values.begin(), light.grid.values.end(), 1.0f);
   light.grid.detail.isovalues = ValueRange{.low = -0.41f, .high = -0.39f};
-  light.metadata["isolux.volume_sha256"] = volume_sha256(volume);
   light.metadata["isolux.iso_range"] = "-0.41:-0.39";
   write_light(light, path("light.nrrd"), volume.space);
   const auto draw = [&](const std::string& name, const std::string& arguments) {
@@ -265,9 +267,7 @@ TEST_F(IsoluxView, WritesNoPictureThatIsNotFinished) {
 TEST_F(IsoluxView, WritesNoPictureWithoutTheExactLightAskedFor) {
   if (!has_xvfb()) GTEST_SKIP() << "xvfb-run or xauth is not installed";
   const Volume volume = read_volume("gen:sphere:16");
-  LightFile light;
-  light.grid = IlluminationGrid(cell_lattice(volume.lattice()), 1);
-  light.metadata["isolux.volume_sha256"] = volume_sha256(volume);
+  LightFile light = light_of(volume);
   light.metadata["isolux.scene"] = R"({"environment":{"type":"image"}})";
   write_light(light, path("light.nrrd"), volume.space);
   EXPECT_EQ(run_with_display("gen:sphere:16 --exact-light --size 64x64 --light " + path("light.nrrd") +
@@ -287,8 +287,7 @@ TEST_F(IsoluxView, RefusesAMissingVolumeAndTheLightOfAnother) {
   if (!has_xvfb()) GTEST_SKIP() << "xvfb-run or xauth is not installed";
   EXPECT_EQ(run_with_display(path("missing.nrrd") + " --frames 1"), 1);
   EXPECT_NE(said().find("missing.nrrd"), std::string::npos) << said();
-  LightFile light;
-  light.grid = IlluminationGrid(cell_lattice(read_volume("gen:sphere:8").lattice()), 1);
+  LightFile light = light_of(read_volume("gen:sphere:8"));
   light.metadata["isolux.volume_sha256"] = std::string(64, '0');
   write_light(light, path("light.nrrd"), "left-posterior-superior");
   EXPECT_EQ(run_with_display("gen:sphere:8 --frames 1 --light " + path("light.nrrd")), 1);
