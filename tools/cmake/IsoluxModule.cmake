@@ -25,12 +25,23 @@ option(ISOLUX_INSTALL "Install the libraries, their headers and the package, and
 option(ISOLUX_TESTS "Build the tests" ${PROJECT_IS_TOP_LEVEL})
 option(ISOLUX_BENCHES "Build the kernel benchmarks" OFF)
 option(ISOLUX_EXAMPLES "Build the examples of the modules' READMEs" ${PROJECT_IS_TOP_LEVEL})
-option(ISOLUX_UNITY "Compile several sources of a library or program as one: two thirds of the time, as headers cost most of it" OFF)
+option(ISOLUX_UNITY "Compile several sources of a library or program as one: half of the time, as headers cost most of it" OFF)
 option(ISOLUX_WERROR "Treat warnings as errors" OFF)
 set(ISOLUX_TEST_FLAGS "" CACHE STRING "Compiler flags of test programs alone, such as -O1: their own code takes longer to compile than to run")
 set(ISOLUX_TEST_SHARDS "" CACHE STRING "Run each program of tests in so many processes, instead of one for each test")
 set(ISOLUX_SANITIZE "" CACHE STRING "Sanitizers, such as address,undefined or thread")
 set(ISOLUX_WITHOUT "" CACHE STRING "Packages to do without even where they are installed, such as CGAL;ITK")
+
+# How many sources are compiled as one: the more, the less there is to compile, and the less there is to do for many processors at once. Few
+# divide many, so that what compiles in the largest batches compiles in all.
+cmake_host_system_information(RESULT processors QUERY NUMBER_OF_LOGICAL_CORES)
+if(processors LESS 4)
+  set(ISOLUX_UNITY_BATCH 24)
+elseif(processors LESS 8)
+  set(ISOLUX_UNITY_BATCH 12)
+else()
+  set(ISOLUX_UNITY_BATCH 6)
+endif()
 
 set(CMAKE_CXX_STANDARD 20)
 set(CMAKE_CXX_STANDARD_REQUIRED ON)
@@ -74,7 +85,7 @@ function(isolux_flags target)
   # One search path for where it is built and where it is installed: CMake pads those it edits, and an empty entry means the current folder.
   set(path ${ISOLUX_LOADED_BUILD_DIR} ${CMAKE_BUILD_RPATH} ${CMAKE_INSTALL_RPATH})
   set_target_properties(${target} PROPERTIES BUILD_WITH_INSTALL_RPATH ON INSTALL_RPATH_USE_LINK_PATH ON INSTALL_RPATH "${path}")
-  set_target_properties(${target} PROPERTIES UNITY_BUILD ${ISOLUX_UNITY} UNITY_BUILD_BATCH_SIZE 6)
+  set_target_properties(${target} PROPERTIES UNITY_BUILD ${ISOLUX_UNITY} UNITY_BUILD_BATCH_SIZE ${ISOLUX_UNITY_BATCH})
   if(target MATCHES "_tests$")
     target_compile_options(${target} PRIVATE ${ISOLUX_TEST_FLAGS})
   endif()

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <fstream>
-#include <limits>
 #include <optional>
 #include <string>
 
@@ -12,8 +11,6 @@
 
 namespace isolux {
 namespace {
-
-constexpr double kNoLimit = std::numeric_limits<double>::infinity();
 
 /// The bytes that a file of the system's says behind a word, in units of 1024.
 std::optional<std::uint64_t> bytes_behind(const char* file, const std::string& word) {

@@ -2,15 +2,12 @@
 
 #include <algorithm>
 #include <fstream>
-#include <limits>
 #include <string>
 
 namespace isolux {
 namespace {
 
 namespace fs = std::filesystem;
-
-constexpr double kNoLimit = std::numeric_limits<double>::infinity();
 
 /// The files of one version of control groups.
 struct GroupFiles {

@@ -1,10 +1,13 @@
 #pragma once
 
 #include <filesystem>
+#include <limits>
 
 namespace isolux {
 
-/// What a control group, as of a container or of a batch job, lets its programs have: infinite where nothing is said.
+inline constexpr double kNoLimit = std::numeric_limits<double>::infinity();
+
+/// What a control group, as of a container or of a batch job, lets its programs have: kNoLimit where nothing is said.
 struct GroupMemory {
   double most;  ///< bytes in all
   double left;  ///< bytes that are not taken yet; what caches files counts as left

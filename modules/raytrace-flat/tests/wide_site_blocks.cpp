@@ -15,13 +15,13 @@
 namespace isolux::test {
 namespace {
 
-constexpr std::size_t kSites = 300000;  // listed by groups of 131072 at most
+constexpr std::size_t kManySites = 300000;  // listed by groups of 131072 at most
 
 Sites random_sites(const Volume& volume) {
   const TrilinearField field(volume);
   RandomStream random(7, 0);
   Sites sites;
-  while (sites.size() < kSites) {
+  while (sites.size() < kManySites) {
     const Vec3 p = Vec3(volume.lattice().size - 1) *
                    Vec3(random.uniform_double(), random.uniform_double(), random.uniform_double());
     sites.positions.emplace_back(p);
