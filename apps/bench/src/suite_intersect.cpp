@@ -188,7 +188,7 @@ std::vector<ProblemSet> problem_sets(const SuiteContext& context) {
 }
 
 /// The pictures of one set of cells and of wrong hits in all, and the table.
-struct Figures {
+struct IntersectFigures {
   std::vector<Plot> errors;
   Plot wrong{.id = "wrong",
              .title = "Time of a ray-cell test against wrong hits",
@@ -246,7 +246,7 @@ std::string errors_beside_others(const Table& table) {
 SuiteReport run_intersect(const SuiteContext& context) {
   SuiteReport report;
   const std::vector<ProblemSet> sets = problem_sets(context);
-  Figures figures;
+  IntersectFigures figures;
   figures.wrong.sentence =
       "A mark for each set of cells, with the deviation of the count; what made no wrong hit is drawn at a third of "
       "one "

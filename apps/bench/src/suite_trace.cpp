@@ -130,7 +130,7 @@ void add_touched(Table& table, const std::string& name, const Volume& volume, co
 }
 
 /// The figures of the suite as they grow.
-struct Figures {
+struct TraceFigures {
   Plot sizes{.id = "sizes",
              .title = "Rays a second against the size of the volume (gen:gyroid)",
              .x_label = "grid points an axis",
@@ -146,7 +146,7 @@ struct Figures {
                               "cells that no ray has to test %"}};
 };
 
-void measure_sizes(const SuiteContext& context, Figures& figures) {
+void measure_sizes(const SuiteContext& context, TraceFigures& figures) {
   const auto sizes = context.pick<std::vector<int>>({17}, {32, 64, 128}, {32, 64, 128, 256, 512});
   const std::vector<int> threads = context.run.threads == 1 ? std::vector<int>{1} : std::vector<int>{1, 2};
   const std::vector<std::string> names = tracer_names(context);
@@ -187,7 +187,7 @@ void measure_sizes(const SuiteContext& context, Figures& figures) {
   figures.work.series = std::move(work);
 }
 
-void measure_real(const SuiteContext& context, Figures& figures) {
+void measure_real(const SuiteContext& context, TraceFigures& figures) {
   const std::vector<std::pair<std::string, float>> real{
       {"neghip_64x64x64_uint8.raw", 80.0f}, {"engine.nrrd", 110.0f}, {"bonsai.nrrd", 90.0f}};
   const std::vector<std::string> names = tracer_names(context);
@@ -240,7 +240,7 @@ std::string said_beside_embree(const Table& table, const std::string& tracer) {
 
 SuiteReport run_trace(const SuiteContext& context) {
   SuiteReport report;
-  Figures figures;
+  TraceFigures figures;
   figures.sizes.sentence =
       "Cosine rays from sites uniform in the volume, one a cell, each confined to its site's level set (where a whole "
       "bake takes too long, the isovalues nearest to 0); Embree traces the triangles of the isosurface 0, any hit. "

@@ -12,7 +12,7 @@
 namespace isolux::test {
 namespace {
 
-constexpr int kSize = 20;
+constexpr int kRangeSize = 20;
 
 /// A steep torus: a cell's values span a good part of the range, so that hardly any texel's own value lies in a narrow
 /// one.
@@ -48,9 +48,9 @@ TEST_P(IsoRange, ReadsWhatABakeOfAllLevelSetsGives) {
   // Places of the level set along the grid's edges and diagonals.
   int found = 0;
   double squares = 0.0;
-  for (int k = 0; k + 1 < kSize; ++k)
-    for (int j = 0; j + 1 < kSize; ++j)
-      for (int i = 0; i + 1 < kSize; ++i)
+  for (int k = 0; k + 1 < kRangeSize; ++k)
+    for (int j = 0; j + 1 < kRangeSize; ++j)
+      for (int i = 0; i + 1 < kRangeSize; ++i)
         for (const Vec3& way : {Vec3(1, 0, 0), Vec3(0, 1, 0), Vec3(0, 0, 1), Vec3(1, 1, 1)}) {
           double low = 0.0;
           double high = 1.0;
