@@ -62,7 +62,7 @@ std::vector<Case> cases() {
 }
 
 /// A case with its volume and the points where it is judged.
-struct Bench {
+struct ResamplingBench {
   const SuiteContext& context;
   const Case& test;
   Volume volume;
@@ -82,8 +82,8 @@ struct Bench {
 Cell none_if_zero(double value) { return value > 0.0 ? Cell(value) : Cell(kNone); }
 
 /// Adds one method's row to the table and point to its curve.
-void measure(const Bench& bench, const Resampling& method, const std::string& sampler, const SampleSet& samples,
-             const std::vector<int>& ks, Table& table, Series& series) {
+void measure(const ResamplingBench& bench, const Resampling& method, const std::string& sampler,
+             const SampleSet& samples, const std::vector<int>& ks, Table& table, Series& series) {
   for (const int k : ks) {
     const ResamplingResult result = bench.error(method, k, samples);
     table.rows.push_back({bench.test.title, sampler, method.name, k > 0 ? Cell(double(k)) : Cell(std::string()),
@@ -100,7 +100,7 @@ int typical_k(const Resampling& method) {
   return method.backend == "moving_least_squares" && method.neighbours.size() > 3 ? 16 : 11;
 }
 
-Plot error_over_time(const Bench& bench, std::size_t wanted, Table& table) {
+Plot error_over_time(const ResamplingBench& bench, std::size_t wanted, Table& table) {
   const Case& test = bench.test;
   Plot plot{.id = test.id,
             .title = fmt::format("Resampling: {}", test.title),
@@ -128,7 +128,7 @@ Plot error_over_time(const Bench& bench, std::size_t wanted, Table& table) {
   return plot;
 }
 
-Plot error_over_samples(const Bench& bench, double seconds, Table& rates) {
+Plot error_over_samples(const ResamplingBench& bench, double seconds, Table& rates) {
   const Case& test = bench.test;
   Plot plot{.id = "samples-" + test.id,
             .title = fmt::format("Error against samples: {}", test.title),
@@ -193,7 +193,8 @@ SuiteReport run_resample(const SuiteContext& context) {
   for (std::size_t c = 0; c < all.size(); ++c) {
     const Case& test = all[c];
     context.say(test.title);
-    Bench bench{.context = context, .test = test, .volume = sample_analytic_field(test.truth.field, n), .points = {}};
+    ResamplingBench bench{
+        .context = context, .test = test, .volume = sample_analytic_field(test.truth.field, n), .points = {}};
     bench.points = probe_points(test.truth, bench.volume, std::size_t(context.pick(2000, 8000, 20000)), context);
     Plot plot = error_over_time(bench, wanted, table);
     report.highlights.push_back(most_accurate(plot, test.title));

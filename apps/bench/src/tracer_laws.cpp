@@ -26,7 +26,7 @@ Scene furnace(float albedo, float emission) {
 }
 
 /// Everything a check of one tracer needs.
-struct Bench {
+struct LawBench {
   const SuiteContext& context;
   std::string name;
   std::unique_ptr<FlatTracer> tracer;
@@ -40,7 +40,7 @@ struct Bench {
   }
 };
 
-Bench bench_of(const std::string& tracer, const SuiteContext& context) {
+LawBench bench_of(const std::string& tracer, const SuiteContext& context) {
   return {.context = context, .name = tracer, .tracer = context.stages.tracers.create(tracer)};
 }
 
@@ -58,11 +58,11 @@ const Volume& furnace_volume() {
   return volume;
 }
 
-Sites furnace_sites(const Bench& bench) {
+Sites furnace_sites(const LawBench& bench) {
   return bench.sites(furnace_volume(), std::size_t(bench.context.pick(100, 400, 4000)), open_gyroid());
 }
 
-void furnaces(const Bench& bench, Judge& judge) {
+void furnaces(const LawBench& bench, Judge& judge) {
   const Sites sites = furnace_sites(bench);
   const auto rays = 64.0 * double(sites.size());
   const auto energy = [&](float albedo, float emission) {
@@ -76,7 +76,7 @@ void furnaces(const Bench& bench, Judge& judge) {
 
 /// How many of the sites get lighter where paths may be twenty times as long: light finds its way to them through necks
 /// so narrow that the tracer's longest path ends before. None if the tracer has no such option.
-double lit_by_longer_paths(const Bench& bench, const Sites& sites, const std::vector<float>& before) {
+double lit_by_longer_paths(const LawBench& bench, const Sites& sites, const std::vector<float>& before) {
   const BackendInfo& info = bench.context.stages.tracers.info(bench.name);
   const bool has_option = std::any_of(info.options.begin(), info.options.end(),
                                       [](const OptionInfo& option) { return option.name == "longest_path"; });
@@ -92,7 +92,7 @@ double lit_by_longer_paths(const Bench& bench, const Sites& sites, const std::ve
 
 /// On all level sets, closed pockets included: whatever lacks light in the white furnace lies where a flood over the
 /// volume finds no way out either, or behind a neck.
-void pockets(const Bench& bench, Judge& judge) {
+void pockets(const LawBench& bench, Judge& judge) {
   const Sites sites = bench.sites(furnace_volume(), std::size_t(bench.context.pick(150, 1000, 4000)));
   const SampleSet samples = bench.trace(furnace_volume(), furnace(1.0f, 0.0f), sites, 64, kAllBounces).samples;
   double dark = 0.0;
@@ -116,7 +116,7 @@ void pockets(const Bench& bench, Judge& judge) {
 }
 
 /// The sharpest single test: a closed form in which every lost or gained ray counts many times over.
-void open_sphere(const Bench& bench, Judge& judge) {
+void open_sphere(const LawBench& bench, Judge& judge) {
   const Truth truth = integrating_sphere();
   const Volume volume = sample_analytic_field(truth.field, 65);
   const Sites sites =
@@ -130,7 +130,7 @@ void open_sphere(const Bench& bench, Judge& judge) {
 }
 
 /// Noise in a shell of higher values: light has no way in, so any is a leak.
-void leaks(const Bench& bench, double seconds, Judge& judge) {
+void leaks(const LawBench& bench, double seconds, Judge& judge) {
   const double wanted = bench.context.pick(1e5, 2e6, 1e8);
   double rays = 0.0;
   double leaked = 0.0;
@@ -147,7 +147,7 @@ void leaks(const Bench& bench, double seconds, Judge& judge) {
 }
 
 /// Values that a number may go wrong on: each volume's outputs have to be finite and not negative.
-void numbers(const Bench& bench, Judge& judge) {
+void numbers(const LawBench& bench, Judge& judge) {
   double bad = 0.0;
   double total = 0.0;
   for (const Volume& volume : nasty_volumes()) {
@@ -165,7 +165,7 @@ void numbers(const Bench& bench, Judge& judge) {
 }
 
 /// Twice the light is twice e, to the bit: the random numbers are the same and 2 is a power of two.
-void linearity(const Bench& bench, Judge& judge) {
+void linearity(const LawBench& bench, Judge& judge) {
   const Volume volume = sample_analytic_field("marschner-lobb", 41);
   const Sites sites = bench.sites(volume, std::size_t(bench.context.pick(100, 500, 5000)));
   Scene twice;
@@ -180,7 +180,7 @@ void linearity(const Bench& bench, Judge& judge) {
 }
 
 /// The tracer against the double-precision one: equal up to the noise of both.
-void against_double(const Bench& bench, Judge& judge) {
+void against_double(const LawBench& bench, Judge& judge) {
   if (bench.name == "scalar") return;
   const auto scalar = bench.context.stages.tracers.create("scalar");
   double worst = 0.0;
@@ -202,7 +202,7 @@ void against_double(const Bench& bench, Judge& judge) {
 }
 
 /// What skipping is worth, in numbers that no busy machine can blur.
-void work(const Bench& bench, Judge& judge) {
+void work(const LawBench& bench, Judge& judge) {
   const Volume volume = sample_analytic_field("gyroid", 97);
   // Few isovalues: tracers that look at intervals of them see no more than the sites need.
   const Sites sites = bench.sites(volume, bench.context.pick(500, 2000, 20000), ValueRange{.low = 0.0f, .high = 0.01f});
@@ -216,7 +216,7 @@ void work(const Bench& bench, Judge& judge) {
 }  // namespace
 
 void try_laws(const std::string& tracer, const SuiteContext& context, double seconds, Judge& judge) {
-  const Bench bench = bench_of(tracer, context);
+  const LawBench bench = bench_of(tracer, context);
   furnaces(bench, judge);
   pockets(bench, judge);
   open_sphere(bench, judge);
@@ -228,7 +228,7 @@ void try_laws(const std::string& tracer, const SuiteContext& context, double sec
 }
 
 Series furnace_energy(const std::string& tracer, const SuiteContext& context) {
-  const Bench bench = bench_of(tracer, context);
+  const LawBench bench = bench_of(tracer, context);
   const Sites sites = furnace_sites(bench);
   Series energy{.name = tracer};
   for (const int bounces : {0, 1, 2, 4, 8, 16, 32}) {
