@@ -41,6 +41,24 @@ TEST(Denoise, GivesTheSameBitsHoweverManyLayersAreHeld) {
   EXPECT_EQ(by_layers.noisy_rest, at_once.noisy_rest);
 }
 
+// Of two samples at a texel the mean, channel by channel.
+TEST(Denoise, KeepsEachChannelsConstant) {
+  const Volume volume = testing::ramp_volume({8, 7, 6});
+  SampleSet samples;
+  for (int k = 0; k < 5; ++k)
+    for (int j = 0; j < 6; ++j)
+      for (int i = 0; i < 7; ++i)
+        for (int copy = 0; copy <= i % 2; ++copy)
+          testing::add_sample(samples, volume, Vec3(i, j, k) + 0.5, {0.25f, 1.5f, 4.0f}, 0.01f);
+  const DenoisedLight light = denoised_light(volume, samples, cell_lattice(volume.lattice()), {});
+  ASSERT_EQ(light.rest.size(), samples.radiance.size());
+  for (std::size_t v = 0; v < light.rest.size(); v += 3) {
+    EXPECT_NEAR(light.rest[v], 0.25, 1e-6);
+    EXPECT_NEAR(light.rest[v + 1], 1.5, 1e-6);
+    EXPECT_NEAR(light.rest[v + 2], 4.0, 4e-6);
+  }
+}
+
 TEST(SampleWindow, HoldsWhatIsNotLetGo) {
   SampleWindow<int> window(2, 5);
   window.hold_until(4);

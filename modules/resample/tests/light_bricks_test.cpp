@@ -60,6 +60,29 @@ TEST(LightBricks, ReadAsTheWholeGridWithinTheRange) {
   }
 }
 
+// One bright voxel at either side of a brick's edge: of the eight cells that it touches one alone has its corner in
+// some of the bricks.
+TEST(LightBricks, HoldCellsOfWhichOneCornerReachesTheRange) {
+  constexpr ValueRange kFaint{.low = 0.001f, .high = 1.0f};
+  for (int q = 0; q < 8; ++q) {
+    const Vec3 bright(4 + q % 2, 4 + q / 2 % 2, 4 + q / 4);
+    const Volume volume = make_volume({12, 12, 12}, Vec3(1.0), [&](const Vec3& p) { return p == bright ? 1.0 : 0.0; });
+    const TrilinearField field(volume);
+    IlluminationGrid light = uneven_light(volume, 1, {11, 11, 11});
+    light.detail.isovalues = kFaint;
+    const LightReader dense(volume, light);
+    const LightReader sparse(volume, light, TexelStorage::kBricks);
+    ASSERT_NE(sparse.bricks(), nullptr);
+    for (std::uint64_t s = 0; s < 2000; ++s) {
+      RandomStream random(9, s);
+      const Vec3 p =
+          bright - 1.0 + 2.0 * Vec3(random.uniform_double(), random.uniform_double(), random.uniform_double());
+      if (field.value(p) < double(kFaint.low)) continue;
+      EXPECT_EQ(sparse.at_index(p), dense.at_index(p)) << "voxel " << q;
+    }
+  }
+}
+
 TEST(LightBricks, AreNotMadeOfALightOfAllIsovalues) {
   const Volume volume = ball_volume();
   IlluminationGrid light = uneven_light(volume, 1, {23, 21, 19});

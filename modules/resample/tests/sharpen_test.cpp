@@ -71,6 +71,19 @@ TEST(Sharpen, RaisesRidgesThatReadingBlunts) {
   }
 }
 
+// It looks at two texels to either side: those nearer to the end stay.
+TEST(Sharpen, ReachesTheThirdTexelFromEitherEnd) {
+  for (const int ridge : {1, 2, kSize - 3, kSize - 2}) {
+    const auto falling = [&](int at) { return 8.0f - 0.25f * std::fabs(float(at - ridge)); };
+    const std::size_t along_x = grid_of([](int, int, int) { return 0.0f; }).lattice.offset(ridge, 12, 12);
+    const IlluminationGrid x = sharpened(grid_of([&](int i, int, int) { return falling(i); }));
+    const IlluminationGrid z = sharpened(grid_of([&](int, int, int k) { return falling(k); }));
+    const bool is_reached = ridge >= 2 && ridge < kSize - 2;
+    EXPECT_EQ(x.values[along_x] > 8.0f, is_reached) << ridge;
+    EXPECT_EQ(z.values[z.lattice.offset(12, 12, ridge)] > 8.0f, is_reached) << ridge;
+  }
+}
+
 TEST(Sharpen, LooksAtLitNeighboursAlone) {
   IlluminationGrid light = grid_of([](int i, int j, int k) { return float((i * i + j * j + k * k) % 7); });
   const std::size_t hole = light.lattice.offset(12, 12, 12);

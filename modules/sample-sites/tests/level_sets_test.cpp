@@ -2,6 +2,7 @@
 #include <isolux/sample_sites.h>
 
 #include <cmath>
+#include <glm/common.hpp>
 #include <map>
 
 #include "test_volumes.h"
@@ -31,6 +32,18 @@ TEST(LevelSets, AreAsManyInSteepCellsAsInGentleOnes) {
   std::map<int, int> by_layer;
   for (const Vec3f& p : sites.positions) ++by_layer[int(p.x)];
   for (int layer = 1; layer < 8; ++layer) EXPECT_EQ(by_layer[layer], 4 * 64) << layer;
+}
+
+// On planes of x, y or z: along the others like random numbers, whose mean over n cells is off by .29 / sqrt(n).
+TEST(LevelSets, AreSpreadOverTheSurfaceInACell) {
+  for (int axis = 0; axis < 3; ++axis) {
+    const Volume volume = index_volume({17, 17, 17}, [&](const Vec3& p) { return p[axis]; });
+    const Sites sites = sample(volume, {.low = 3.5f, .high = 3.5f}, 16.0);
+    ASSERT_EQ(sites.size(), 16u * 256u);
+    Vec3 mean(0.0);
+    for (const Vec3f& p : sites.positions) mean += Vec3(p - glm::floor(p)) / double(sites.size());
+    for (int a = 0; a < 3; ++a) EXPECT_NEAR(mean[a], 0.5, a == axis ? 0.0 : 0.02);
+  }
 }
 
 TEST(LevelSets, NeedNoMoreThanOneSiteInACell) {

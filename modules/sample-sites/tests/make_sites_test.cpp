@@ -96,6 +96,20 @@ TEST(MakeSites, KeepsTheOrderAndDropsWhatIsOutsideTheRange) {
   EXPECT_EQ(sites.isovalues, (std::vector<float>{5.5f, 2.0f, 6.0f, 3.0f}));
 }
 
+TEST(MakeSites, KeepsEachSitesOwnNormal) {
+  const Volume volume = index_volume({7, 6, 5}, [](const Vec3& p) { return std::sin(p.x) + p.y * p.y + p.z * p.x; });
+  SiteRequest request = whole(volume);
+  request.isovalues = ValueRange{.low = 2.0f, .high = 12.0f};
+  const std::vector<Vec3f> points{{0.5f, 0.5f, 0.5f}, {2.5f, 1.5f, 0.5f}, {5.5f, 4.5f, 3.5f}, {1.5f, 2.5f, 2.5f}};
+  const Sites sites = make_sites(volume, points, request, {});
+  ASSERT_EQ(sites.positions, (std::vector<Vec3f>{points[1], points[3]}));
+  for (std::size_t s = 0; s < sites.size(); ++s) {
+    const Sites alone = make_sites(volume, {sites.positions[s]}, request, {});
+    EXPECT_EQ(sites.normals[s], alone.normals.at(0));
+    EXPECT_EQ(sites.isovalues[s], alone.isovalues.at(0));
+  }
+}
+
 TEST(MakeSites, DropsFlatCellsButNotTheirBorders) {
   const Volume volume = index_volume({7, 4, 4}, [](const Vec3& p) { return p.x < 3.5 ? 0.0 : p.x; });
   // In the flat part, next to it (where central differences already see the slope), on its border, in the slope.

@@ -109,6 +109,20 @@ TEST(Stratified, PutsOneSiteInEachStratum) {
   for (const int n : bins) EXPECT_EQ(n, 1);
 }
 
+// Voxels of .5 x 1 x 2: as many strata a unit of length along each axis.
+TEST(Stratified, HasStrataThatAreCubesInTheWorld) {
+  Volume volume = index_volume({9, 9, 9}, slope);
+  Lattice lattice = volume.lattice();
+  for (int a = 0; a < 3; ++a) lattice.frame.axes[a][a] = 0.5 * (1 << a);
+  volume.values = Grid<float>(lattice, {volume.values.values().begin(), volume.values.values().end()});
+  const Sites sites = sample("stratified", volume, 512);
+  ASSERT_EQ(sites.size(), 512u);
+  std::vector<int> bins(512);
+  for (const Vec3f& p : sites.positions)
+    ++bins[32 * std::size_t(2.0f * p.z) + 4 * std::size_t(p.y) + std::size_t(0.5f * p.x)];
+  for (const int n : bins) EXPECT_EQ(n, 1);
+}
+
 TEST(Texels, SitAtTheTexelCentresInOrder) {
   const Volume volume = index_volume({5, 4, 3}, slope);
   const auto at = [&](const Lattice& texels) {
