@@ -134,7 +134,6 @@ TEST(Environment, BlackOnesDoNotShine) {
   EXPECT_FALSE(PreparedEnvironment(black).has_samples());
 }
 
-// In base 2, any 2^m consecutive paths from a multiple of 2^m have one point in every elementary box of area 2^-m.
 TEST(Environment, OnlyWhatIsMuchBrighterIsPartedFromAnImage) {
   Scene scene = furnace(0.5f);
   EXPECT_EQ(&SceneParts(scene).soft(), &scene);
@@ -158,6 +157,24 @@ TEST(Environment, OnlyWhatIsMuchBrighterIsPartedFromAnImage) {
   }
 }
 
+// Four rows of .383, .924, .924 and .383 of the sphere's breadth, all of luminance 1 but one: that of the first row is
+// above four times the mean from 8.243 on, that of the second is so much of the sky that it never is.
+TEST(Environment, TheMeanIsOfTheSphere) {
+  const auto is_parted = [](std::size_t row, float bright) {
+    ImageEnvironment image{.width = 1, .height = 4, .pixels = std::vector<Vec3f>(4, Vec3f(1.0f))};
+    image.pixels[row] = Vec3f(bright);
+    Scene scene = furnace(0.5f);
+    scene.environment = image;
+    return SceneParts(scene).bright() != nullptr;
+  };
+  for (const std::size_t row : {0, 3}) {
+    EXPECT_FALSE(is_parted(row, 8.2f));
+    EXPECT_TRUE(is_parted(row, 8.3f));
+  }
+  EXPECT_FALSE(is_parted(1, 1e6f));
+}
+
+// In base 2, any 2^m consecutive paths from a multiple of 2^m have one point in every elementary box of area 2^-m.
 TEST(PathSampler, IsANetInEveryPairOfDimensions) {
   for (const std::uint64_t site : {0ull, 1ull, 12345678901ull}) {
     const PathSampler numbers(7, site);

@@ -84,5 +84,13 @@ TEST(NrrdNames, OfDataFilesAreReadOnce) {
   }
 }
 
+TEST(Nrrd, ReadsEveryVersion) {
+  const test::TemporaryFolder folder;
+  for (const char version : std::string("123456")) {
+    const std::string rest = "\ntype: uint8\nencoding: raw\ndimension: 3\nsizes: 2 1 2\n\nabcd";
+    EXPECT_EQ(read_volume(folder.write("a.nrrd", std::string("NRRD000") + version + rest)).values(1, 0, 1), float('d'));
+  }
+}
+
 }  // namespace
 }  // namespace isolux

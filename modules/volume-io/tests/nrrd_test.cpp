@@ -229,7 +229,8 @@ TEST(Nrrd, RefusesHostileHeadersInWords) {
   const std::string type = "type: uint8\n";
   const std::vector<Case> cases = {
       {"", "empty"},
-      {"NRRD0009\n", "NRRD0001 to NRRD0006"},
+      {"NRRD0000\n", "NRRD0001 to NRRD0006"},
+      {"NRRD0007\n", "NRRD0001 to NRRD0006"},
       {"NRRD0004", "no 'dimension'"},
       {header(type + raw + "dimension: 3\n"), "no 'sizes'"},
       {header(type + raw + "dimension: 3\nsizes: 2 2\n"), "each of the 3 axes"},
@@ -278,6 +279,7 @@ TEST(Nrrd, RefusesHostileHeadersInWords) {
       {header(type + raw + kSmall + "space: LPS\nspace origin: (0,0,inf)\n") + "abcd", "finite numbers"},
       {header(type + raw + "dimension: 4\nsizes: 3 2 2 2\nkinds: RGB-color domain domain domain\n"), "a volume has 3"},
       {header(type + raw + "dimension: 2\nsizes: 3 2\n"), "a volume has 3"},
+      {header(type + raw + "dimension: 1\nsizes: 3\n"), "a volume has 3"},
       {header(type + raw + kSmall + "data file: LIST\n"), "join them first"},
       {header(type + raw + kSmall + "data file: s%03d.raw 1 9 1\n"), "join them first"},
       {header(type + raw + kSmall + "data file: \n"), "a file's name is needed"},

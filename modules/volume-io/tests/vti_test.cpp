@@ -185,6 +185,9 @@ TEST_F(Vti, IsPutTogetherFromPieces) {
   EXPECT_TRUE(std::holds_alternative<Grid<std::int16_t>>(read_stored_volume(folder_.file("a.vti")).values));
   // Neighbours share the points of their border.
   expect_ramp(read_volume(folder_.write("a.vti", file(left + piece("2 3 0 1 0 1", {1, 2, 4, 5, 7, 8, 10, 11})))));
+  const std::string front = piece("1 3 0 0 0 1", {0, 1, 2, 6, 7, 8});
+  expect_ramp(read_volume(folder_.write("a.vti", file(front + piece("1 3 1 1 0 1", {3, 4, 5, 9, 10, 11})))));
+  EXPECT_THAT(refused("a.vti", file(front)), HasSubstr("leave out 6 of 12 values"));
   EXPECT_THAT(refused("a.vti", file(left)), HasSubstr("leave out 4 of 12 values"));
   EXPECT_THAT(
       refused("a.vti",
