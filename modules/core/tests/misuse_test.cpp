@@ -171,6 +171,9 @@ TEST(Misuse, NumbersThatNoSiteHasAreRefused) {
   const std::vector<std::size_t> third{2};
   EXPECT_EQ(some_of(two_sites(), second).isovalues, std::vector<float>{2.0f});
   EXPECT_THROW((void)some_of(two_sites(), third), InvalidInput);
+  Sites without_normals = two_sites();
+  without_normals.normals.clear();
+  EXPECT_THROW((void)some_of(without_normals, second), InvalidInput);
 }
 
 TEST(Misuse, AFieldOfATemporaryDoesNotCompile) {

@@ -80,6 +80,11 @@ TEST(Registry, TakesNumbersWithASign) {
     EXPECT_THROW((void)registry().create("mixer", {{"count", text}}), InvalidInput) << text;
 }
 
+TEST(Registry, TakesWhatIsAtAnOptionsEnds) {
+  EXPECT_EQ(registry().create("mixer", {{"count", "1"}, {"weight", "0"}})->answer(), 1.0);
+  EXPECT_EQ(registry().create("mixer", {{"count", "10"}})->answer(), 10.5);
+}
+
 TEST(Registry, NamesWhatIsAllowedWhenABackendIsUnknown) {
   EXPECT_THAT([] { static_cast<void>(registry().create("mixr")); },
               ThrowsMessage<InvalidInput>(
