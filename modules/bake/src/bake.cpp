@@ -3,6 +3,7 @@
 #include <isolux/bake/choose_texels.h>
 #include <isolux/bake/kept_rays.h>
 #include <isolux/core/error.h>
+#include <isolux/core/plain_floats.h>
 #include <isolux/core/stopwatch.h>
 
 #include <algorithm>
@@ -260,6 +261,7 @@ BakeSettings with_defaults(BakeSettings settings, const Lattice& volume, const S
 
 BakeResult bake(const Volume& volume, const Scene& scene, const BakeSettings& given, const Stages& stages,
                 const Run& run) {
+  const PlainFloats plain;
   BakeSettings settings = with_defaults(given, volume.lattice(), stages);
   const Stopwatch watch;
   require_settings(settings);

@@ -1,5 +1,6 @@
 #include <isolux/core/error.h>
 #include <isolux/core/parallel.h>
+#include <isolux/core/plain_floats.h>
 #include <tbb/global_control.h>
 #include <tbb/info.h>
 #include <tbb/parallel_for.h>
@@ -87,7 +88,10 @@ void parallel_blocks(std::size_t count, std::size_t block_size, const Run& run, 
   const auto work = [&](std::size_t b) {
     throw_if_stopped(run);
     const std::size_t begin = b * block_size;
-    body({.begin = begin, .end = begin + std::min(block_size, count - begin), .index = b});
+    {
+      const PlainFloats plain;
+      body({.begin = begin, .end = begin + std::min(block_size, count - begin), .index = b});
+    }
     const std::size_t now = ++done;
     if (!run.progress || stage.empty()) return;
     // A thread that finds another one reporting lets it: progress is for people.

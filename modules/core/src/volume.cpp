@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 #include <isolux/core/error.h>
+#include <isolux/core/plain_floats.h>
 #include <isolux/core/volume.h>
 
 #include <algorithm>
@@ -126,6 +127,7 @@ ValueRange value_range(const VolumeView& volume) {
 }
 
 void require_usable(const VolumeView& volume) {
+  const PlainFloats plain;
   const Index3 size = volume.lattice().size;
   if (size.x < 2 || size.y < 2 || size.z < 2) {
     throw InvalidInput(

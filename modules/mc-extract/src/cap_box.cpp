@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 #include <isolux/core/error.h>
+#include <isolux/core/plain_floats.h>
 #include <isolux/mc_extract/accurate_normals.h>
 #include <isolux/mc_extract/vertex_resolution.h>
 
@@ -239,6 +240,7 @@ void cap_box(IndexedMesh& mesh, const VolumeView& volume, const LevelSet& level_
 }
 
 void finish_mesh(IndexedMesh& mesh, const VolumeView& volume, const ExtractSettings& settings, const Run& run) {
+  const PlainFloats plain;
   // Before there is a cap: the rim's normals are of the surface alone.
   if (settings.normals == NormalKind::kFaces) set_face_normals(mesh);
   if (settings.normals == NormalKind::kAccurate) set_accurate_normals(volume, settings.outer, run, mesh);
