@@ -26,7 +26,7 @@ std::optional<std::uint64_t> bytes_behind(const char* file, const std::string& w
 
 double machine_memory() {
   const double bytes = double(sysconf(_SC_PHYS_PAGES)) * double(sysconf(_SC_PAGE_SIZE));
-  return std::min(bytes > 0.0 ? bytes : kNoLimit, group_memory("/").most);
+  return std::min(bytes > 0.0 ? bytes : kNoLimit, group_memory().most);
 }
 
 double free_addresses() {
@@ -39,7 +39,7 @@ double free_addresses() {
 double free_memory() {
   const auto available = bytes_behind("/proc/meminfo", "MemAvailable:");
   // Hardly anything has more addresses than it uses.
-  return std::min({available ? double(*available) : kNoLimit, group_memory("/").left, free_addresses()});
+  return std::min({available ? double(*available) : kNoLimit, group_memory().left, free_addresses()});
 }
 
 std::uint64_t peak_memory() {

@@ -1,7 +1,7 @@
 #pragma once
 
-#include <filesystem>
 #include <limits>
+#include <string>
 
 namespace isolux {
 
@@ -14,7 +14,7 @@ struct GroupMemory {
 };
 
 /// That of this process's group and those above it, whichever is least, of both versions of Linux's control groups;
-/// files are looked up under `root`, which is the system's own but for tests.
-[[nodiscard]] GroupMemory group_memory(const std::filesystem::path& root);
+/// files are looked up in the folder `root`, which is the system's own, "", but for tests.
+[[nodiscard]] GroupMemory group_memory(const std::string& root = "");
 
 }  // namespace isolux

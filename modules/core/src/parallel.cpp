@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <limits>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -25,9 +26,11 @@ class Arena {
  public:
   explicit Arena(int threads) : threads_(threads) {
     const std::scoped_lock lock(store().guard);
-    auto& unused = store().unused[threads];
+    auto& [unused, made] = store().by_threads[threads];
     if (unused.empty()) {
+      unused.reserve(made + 1);  // so that it can come back without memory
       arena_ = std::make_unique<tbb::task_arena>(threads);
+      ++made;
     } else {
       arena_ = std::move(unused.back());
       unused.pop_back();
@@ -37,15 +40,19 @@ class Arena {
   Arena& operator=(const Arena&) = delete;
   ~Arena() {
     const std::scoped_lock lock(store().guard);
-    store().unused[threads_].push_back(std::move(arena_));
+    store().by_threads.find(threads_)->second.unused.push_back(std::move(arena_));
   }
 
   [[nodiscard]] tbb::task_arena& get() { return *arena_; }
 
  private:
+  struct Alike {
+    std::vector<std::unique_ptr<tbb::task_arena>> unused;
+    std::size_t made = 0;
+  };
   struct Store {
     std::mutex guard;
-    std::map<int, std::vector<std::unique_ptr<tbb::task_arena>>> unused;  ///< by their threads
+    std::map<int, Alike> by_threads;
   };
   /// Never destroyed: loops may run while static objects go.
   static Store& store() {
@@ -56,6 +63,12 @@ class Arena {
   int threads_;
   std::unique_ptr<tbb::task_arena> arena_;
 };
+
+/// What the program around this allows oneTBB, which prints a warning where more are asked for.
+int threads_of_host() {
+  const std::size_t allowed = tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
+  return allowed < std::size_t(tbb::info::default_concurrency()) ? int(allowed) : std::numeric_limits<int>::max();
+}
 
 }  // namespace
 
@@ -99,7 +112,8 @@ void parallel_blocks(std::size_t count, std::size_t block_size, const Run& run, 
     if (lock.owns_lock()) run.progress(stage, double(now) / double(blocks));
   };
   // More threads than blocks would only be started and ended, for every loop again.
-  const int threads = detail::startable_threads(int(std::min(std::size_t(thread_count(run)), blocks)));
+  const int wanted = int(std::min(std::size_t(thread_count(run)), blocks));
+  const int threads = detail::startable_threads(std::min(wanted, threads_of_host()));
   if (threads <= 1) {
     for (std::size_t b = 0; b < blocks; ++b) work(b);
   } else {

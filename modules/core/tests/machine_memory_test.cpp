@@ -26,7 +26,7 @@ class FakeSystem : public ::testing::Test {
     fs::create_directories((root_ / path).parent_path());
     std::ofstream(root_ / path) << text;
   }
-  [[nodiscard]] GroupMemory memory() const { return group_memory(root_); }
+  [[nodiscard]] GroupMemory memory() const { return group_memory(root_.string()); }
 
  private:
   fs::path root_ = fs::path(::testing::TempDir()) /

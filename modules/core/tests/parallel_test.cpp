@@ -2,11 +2,13 @@
 #include <isolux/core/error.h>
 #include <isolux/core/parallel.h>
 #include <isolux/core/random.h>
+#include <tbb/global_control.h>
 
 #include <algorithm>
 #include <atomic>
 #include <cmath>
 #include <limits>
+#include <thread>
 #include <vector>
 
 #include "processor_time.h"
@@ -23,6 +25,17 @@ TEST(ParallelBlocks, CoverEveryItemOnceForAnyNumberOfThreads) {
     });
     for (const auto& count : seen) EXPECT_EQ(count, 1);
   }
+}
+
+TEST(ParallelBlocks, HeedWhatTheProgramAllowsOneTbb) {
+  const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
+  ::testing::internal::CaptureStderr();
+  const auto caller = std::this_thread::get_id();
+  int elsewhere = 0;
+  parallel_blocks(100, 1, {.threads = 4}, "",
+                  [&](const Block&) { elsewhere += std::this_thread::get_id() == caller ? 0 : 1; });
+  EXPECT_EQ(elsewhere, 0);
+  EXPECT_EQ(::testing::internal::GetCapturedStderr(), "");
 }
 
 TEST(ParallelBlocks, MayBeAsLargeAsANumberCanBe) {

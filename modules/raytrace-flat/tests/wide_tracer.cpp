@@ -1,6 +1,9 @@
 // The backend `wide` against exact answers and against `scalar`.
 #include <gtest/gtest.h>
 #include <isolux/core/error.h>
+#include <pthread.h>
+
+#include <functional>
 
 #include "physics_support.h"
 
@@ -217,6 +220,28 @@ TEST(WideTracer, RefusesSitesWithoutNormals) {
   Sites sites = box_sites(volume, 3, OuterSide::kLower);
   sites.normals.pop_back();
   EXPECT_THROW((void)trace_with("wide", volume, Scene{}, sites, {}), InvalidInput);
+}
+
+// What threads hold from their start lies on their stacks: with more of that than a stack has room for, none starts.
+TEST(WideTracer, TracesInThreadsOfSmallStacks) {
+  const Volume volume = gyroid(8);
+  const Sites sites = box_sites(volume, 100, OuterSide::kLower);
+  SampleSet samples;
+  std::function<void()> work = [&] {
+    samples = trace_with("wide", volume, furnace(0.5f), sites, {.rays = 8}, 1).samples;
+  };
+  pthread_attr_t small;
+  ASSERT_EQ(pthread_attr_init(&small), 0);
+  ASSERT_EQ(pthread_attr_setstacksize(&small, std::size_t(512) << 10), 0);
+  const auto run = [](void* given) -> void* {
+    (*static_cast<std::function<void()>*>(given))();
+    return nullptr;
+  };
+  pthread_t thread{};
+  ASSERT_EQ(pthread_create(&thread, &small, run, &work), 0);
+  ASSERT_EQ(pthread_join(thread, nullptr), 0);
+  pthread_attr_destroy(&small);
+  EXPECT_EQ(samples.radiance, trace_with("wide", volume, furnace(0.5f), sites, {.rays = 8}).samples.radiance);
 }
 
 }  // namespace

@@ -5,6 +5,8 @@
 // After foreach_target.h, in this order.
 #include <hwy/highway.h>
 
+#include <memory>
+
 #include "ray_march.h"
 #include "wide/solve-inl.h"
 #include "wide/start-inl.h"
@@ -15,13 +17,25 @@ HWY_BEFORE_NAMESPACE();
 namespace isolux::wide {
 namespace HWY_NAMESPACE {
 
+/// What rays wait in between the stages.
+struct Queues {
+  RayQueue travelling;
+  RayQueue waiting;
+  RootQueue roots;
+};
+
+/// This thread's, made when it first traces: whatever threads hold from their start, those of the whole program have to
+/// find room for on their stacks.
+Queues& own_queues() {
+  static thread_local const auto queues = std::make_unique<Queues>();
+  return *queues;
+}
+
 /// Keeps the queue of travelling rays filled and lets the stages take turns until every ray has its answer.
 template <Question question>
 void run_stages(const FieldView& field, const OccupancyView& occupancy, const InnerView& inner, Rays& rays,
                 TraceCounters& counters) {
-  static thread_local RayQueue travelling;
-  static thread_local RayQueue waiting;
-  static thread_local RootQueue roots;
+  auto& [travelling, waiting, roots] = own_queues();
   const CellReader cells(field);
   Prover prover(field, inner);
   const Guide guide(occupancy, cells);

@@ -16,10 +16,10 @@ struct Block {
 };
 
 /// Calls body for every block of `block_size` items, at least 1 (the last may be shorter), on run.threads threads
-/// (oneTBB), or on those that the system allows, if these are fewer. The blocks do not depend on the number of threads:
-/// a reduction that keeps one partial result a block and adds them in order is the same everywhere. Bodies have
-/// PlainFloats. Reports progress under `stage` (no report if empty). \throw Cancelled; whatever body throws first;
-/// InvalidInput for blocks of no items.
+/// (oneTBB), or on those that the system or a tbb::global_control allows, if these are fewer. The blocks do not depend
+/// on the number of threads: a reduction that keeps one partial result a block and adds them in order is the same
+/// everywhere. Bodies have PlainFloats. Reports progress under `stage` (no report if empty). \throw Cancelled; whatever
+/// body throws first; InvalidInput for blocks of no items.
 void parallel_blocks(std::size_t count, std::size_t block_size, const Run& run, std::string_view stage,
                      const std::function<void(const Block&)>& body);
 
