@@ -41,7 +41,7 @@ TEST(Denoise, GivesTheSameBitsHoweverManyLayersAreHeld) {
   EXPECT_EQ(by_layers.noisy_rest, at_once.noisy_rest);
 }
 
-// Of two samples at a texel the mean, channel by channel.
+// Of two samples at a texel the mean, channel by channel, up to rounding: some 2^-23 of each.
 TEST(Denoise, KeepsEachChannelsConstant) {
   const Volume volume = testing::ramp_volume({8, 7, 6});
   SampleSet samples;

@@ -75,11 +75,10 @@ TEST(Sharpen, RaisesRidgesThatReadingBlunts) {
 TEST(Sharpen, ReachesTheThirdTexelFromEitherEnd) {
   for (const int ridge : {1, 2, kSize - 3, kSize - 2}) {
     const auto falling = [&](int at) { return 8.0f - 0.25f * std::fabs(float(at - ridge)); };
-    const std::size_t along_x = grid_of([](int, int, int) { return 0.0f; }).lattice.offset(ridge, 12, 12);
     const IlluminationGrid x = sharpened(grid_of([&](int i, int, int) { return falling(i); }));
     const IlluminationGrid z = sharpened(grid_of([&](int, int, int k) { return falling(k); }));
     const bool is_reached = ridge >= 2 && ridge < kSize - 2;
-    EXPECT_EQ(x.values[along_x] > 8.0f, is_reached) << ridge;
+    EXPECT_EQ(x.values[x.lattice.offset(ridge, 12, 12)] > 8.0f, is_reached) << ridge;
     EXPECT_EQ(z.values[z.lattice.offset(12, 12, ridge)] > 8.0f, is_reached) << ridge;
   }
 }

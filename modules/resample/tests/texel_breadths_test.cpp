@@ -10,7 +10,7 @@
 namespace isolux {
 namespace {
 
-/// Half the range of f in the cells whose middle lies within a texel's tent, looked for among all cells.
+/// Half the range of f in the cells that a texel's tent touches, looked for among all cells.
 double breadth_by_all_cells(const Volume& volume, const Lattice& texels, const Index3& texel) {
   const IndexToWorld to_volume = index_to_index(texels, volume.lattice());
   const Vec3 low = to_volume.world(Vec3(texel - 1));
