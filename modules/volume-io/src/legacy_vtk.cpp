@@ -4,7 +4,8 @@
 #include "format_checks.h"
 #include "number_text.h"
 #include "plain_text.h"
-#include "text_values.h"
+#include "vtk_extent.h"
+#include "vtk_lines.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -12,6 +13,8 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
+#include <charconv>
 #include <cmath>
 #include <map>
 #include <optional>
@@ -20,56 +23,11 @@ namespace isolux::detail {
 namespace {
 
 constexpr std::string_view kMagic = "# vtk DataFile Version";
-constexpr std::size_t kLongestVtkHeader = 1 << 14;
+constexpr std::uint64_t kMostValues = std::uint64_t(1) << 48;
 
-class VtkHeader {
- public:
-  explicit VtkHeader(const std::string& path) : path_(path), bytes_(first_bytes(path, kLongestVtkHeader)) {}
+using Words = std::vector<std::string>;
 
-  /// The next line, as words in lower case: VTK reads them in any.
-  std::vector<std::string> any_line() {
-    const std::size_t newline = bytes_.find('\n', end_);
-    if (newline == std::string::npos) throw IoError(fmt::format("{}: the VTK header ends early", path_));
-    auto words = plain_words(lower_case(std::string_view(bytes_).substr(end_, newline - end_)));
-    end_ = newline + 1;
-    return words;
-  }
-  /// The next line that is not blank.
-  std::vector<std::string> line() {
-    for (;;) {
-      if (auto words = any_line(); !words.empty()) return words;
-    }
-  }
-  [[nodiscard]] std::size_t end() const { return end_; }
-
-  [[nodiscard]] double number(const std::vector<std::string>& words, std::size_t index) const {
-    const std::string word = index < words.size() ? words[index] : "";
-    const auto value = parse_real(word);
-    if (!value)
-      throw InvalidInput(
-          fmt::format("{}: VTK '{}': '{}' is not a number", path_, excerpt(words.front()), excerpt(word)));
-    return *value;
-  }
-  [[nodiscard]] std::array<double, 3> triple(const std::vector<std::string>& words) const {
-    if (words.size() != 4)
-      throw InvalidInput(fmt::format("{}: VTK '{}' needs three numbers", path_, excerpt(words.front())));
-    return {number(words, 1), number(words, 2), number(words, 3)};
-  }
-  [[nodiscard]] std::array<std::int64_t, 3> sizes(const std::vector<std::string>& words) const {
-    const auto numbers = triple(words);
-    if (!std::all_of(words.begin() + 1, words.end(), [](const auto& w) { return reads_as(ScalarType::kInt64, w); }))
-      throw InvalidInput(fmt::format("{}: VTK '{}': three whole numbers are needed", path_,
-                                     excerpt(fmt::format("{}", fmt::join(words, " ")))));
-    return {std::int64_t(numbers[0]), std::int64_t(numbers[1]), std::int64_t(numbers[2])};
-  }
-
- private:
-  std::string path_;
-  std::string bytes_;
-  std::size_t end_ = 0;
-};
-
-ScalarType scalar_type(const std::string& path, const std::string& type) {
+std::optional<ScalarType> scalar_type(const std::string& type) {
   // A vtkIdType has eight bytes in memory, and four in what VTK writes and reads.
   static const std::map<std::string, ScalarType> types = {{"char", ScalarType::kInt8},
                                                           {"signed_char", ScalarType::kInt8},
@@ -87,159 +45,296 @@ ScalarType scalar_type(const std::string& path, const std::string& type) {
                                                           {"vtktypeuint64", ScalarType::kUint64},
                                                           {"float", ScalarType::kFloat32},
                                                           {"double", ScalarType::kFloat64}};
-  const auto it = types.find(type);
-  if (it == types.end())
-    throw InvalidInput(
-        fmt::format("{}: VTK scalars of type '{}': supported are (unsigned_)char, (unsigned_)short, "
-                    "(unsigned_)int, (unsigned_)long, (unsigned_)long_long, float and double",
-                    path, excerpt(type)));
-  return it->second;
+  const auto it = types.find(lower_case(type));
+  return it == types.end() ? std::nullopt : std::optional(it->second);
 }
 
-// VTK writes all scalars of unsigned chars so.
-constexpr std::string_view kColours = "color_scalars";
-
-// The lines between DATASET and SCALARS, in any order; returns that of SCALARS.
-std::vector<std::string> read_lattice(const std::string& path, VtkHeader& header, Lattice& lattice) {
-  std::optional<std::array<std::int64_t, 3>> sizes;
-  std::optional<double> points;
-  auto words = header.line();
-  for (; words.front() != "scalars" && words.front() != kColours; words = header.line()) {
-    if (words.front() == "dimensions") {
-      sizes = header.sizes(words);
-    } else if (words.front() == "spacing" || words.front() == "aspect_ratio") {
-      const auto spacing = header.triple(words);
-      require_spacing(path, spacing);
-      for (std::size_t a = 0; a < 3; ++a) lattice.frame.axes[int(a)][int(a)] = spacing.at(a);
-    } else if (words.front() == "origin") {
-      const auto origin = header.triple(words);
-      require_finite(path, "the origin", origin);
-      lattice.frame.origin = Vec3(origin[0], origin[1], origin[2]);
-    } else if (words.front() == "point_data") {
-      points = header.number(words, 1);
+/// A name as VTK's writer coded it, with %20 for a blank.
+std::string decoded(const std::string& name) {
+  std::string text;
+  for (std::size_t i = 0; i < name.size(); ++i) {
+    unsigned code = 0;
+    if (name[i] == '%' && i + 2 < name.size() &&
+        std::from_chars(&name[i] + 1, &name[i] + 3, code, 16).ptr == &name[i] + 3) {
+      text += char(code);
+      i += 2;
     } else {
-      throw InvalidInput(fmt::format("{}: VTK '{}' before SCALARS is not supported", path, excerpt(words.front())));
+      text += name[i];
     }
   }
-  if (!sizes) throw InvalidInput(fmt::format("{}: VTK has no DIMENSIONS", path));
-  const std::uint64_t count = checked_count(path, *sizes, 8);
-  if (!points) throw InvalidInput(fmt::format("{}: VTK SCALARS without POINT_DATA before them", path));
-  if (*points != double(count))
-    throw InvalidInput(fmt::format("{}: VTK POINT_DATA {}: DIMENSIONS make {}", path, *points, count));
-  lattice.size = {int((*sizes)[0]), int((*sizes)[1]), int((*sizes)[2])};
-  return words;
+  return text;
 }
 
-std::vector<std::string> words_at(const std::string& path, std::uint64_t offset) {
-  std::string bytes(kLongestVtkHeader, '\0');
-  bytes.resize(file_source(path, offset)->read(std::as_writable_bytes(std::span(bytes))));
-  return plain_words(bytes);
-}
+/// What one keyword says of an array: its role, and where its line has the numbers of values a tuple and the type.
+struct Attribute {
+  const char* keyword;
+  VtkRole role;
+  std::uint64_t components;    ///< a tuple, if no word says it
+  std::size_t component_word;  ///< 0: none
+  std::size_t type_word;       ///< 0: bytes, and as text fractions
+};
+constexpr std::array<Attribute, 10> kAttributes{{{"scalars", VtkRole::kScalars, 1, 3, 2},
+                                                 {"color_scalars", VtkRole::kScalars, 0, 2, 0},
+                                                 {"vectors", VtkRole::kOther, 3, 0, 2},
+                                                 {"normals", VtkRole::kOther, 3, 0, 2},
+                                                 {"tensors", VtkRole::kOther, 9, 0, 2},
+                                                 {"tensors6", VtkRole::kOther, 6, 0, 2},
+                                                 {"texture_coordinates", VtkRole::kOther, 0, 2, 3},
+                                                 {"edge_flags", VtkRole::kOther, 1, 0, 2},
+                                                 {"global_ids", VtkRole::kIds, 1, 0, 2},
+                                                 {"pedigree_ids", VtkRole::kIds, 1, 0, 2}}};
 
-// Of the words behind the values, the attribute that they begin with, as the file names it; see LegacyVtk.
-std::string attribute_of(const std::vector<std::string>& words) {
-  static constexpr std::array<std::string_view, 9> kAttributes = {
-      "scalars",  "color_scalars",       "vectors", "normals",  "tensors",
-      "tensors6", "texture_coordinates", "field",   "cell_data"};
-  // What VTK notes of the values before, up to an empty line.
-  const auto is_attribute = [](const std::string& word) {
-    return std::find(kAttributes.begin(), kAttributes.end(), lower_case(word)) != kAttributes.end();
-  };
-  auto at = words.begin();
-  if (at != words.end() && lower_case(*at) == "metadata") at = std::find_if(at, words.end(), is_attribute);
-  if (at == words.end() || !is_attribute(*at)) return "";
-  return at + 1 == words.end() ? excerpt(*at) : excerpt(*at + " " + *(at + 1));
-}
-
-// The bytes that fractions of 255 stand for, rounded as VTK does.
-class Fractions final : public ByteSource {
+/// Follows a file from array to array.
+class Walk {
  public:
-  Fractions(NumberText& text, const std::string& path, std::uint64_t count) : text_(text), path_(path), count_(count) {}
+  explicit Walk(const std::string& path) : lines_(path) { file_.file = path; }
 
-  std::size_t read(std::span<std::byte> into) override {
-    for (std::byte& byte : into) {
-      const std::string& word = text_.next();
-      if (word.empty()) throw IoError(fmt::format("{}: {} numbers of data expected, {} found", path_, count_, done_));
-      const auto value = parse_real(word);
-      if (!value || !(*value >= 0.0 && *value <= 1.0))
-        throw InvalidInput(fmt::format("{}: '{}', value {} of the data, is no number from 0 to 1 as COLOR_SCALARS are",
-                                       path_, excerpt(word), done_));
-      byte = std::byte(std::lround(255.0 * *value));
-      ++done_;
+  LegacyVtk follow() {
+    start();
+    try {
+      for (Words words = lines_.words(); !words.empty(); words = lines_.words()) part(words);
+    } catch (const Error& error) {
+      const bool some =
+          std::any_of(file_.arrays.begin(), file_.arrays.end(), [](const auto& a) { return a.info.plain; });
+      if (!some) throw;
+      file_.remark = fmt::format("{}; it is read no further", error.what());
     }
-    return into.size();
+    return place();
   }
 
  private:
-  NumberText& text_;
-  std::string path_;
-  std::uint64_t count_;
-  std::uint64_t done_ = 0;
+  void start();
+  LegacyVtk place();
+  void part(const Words& words);
+  bool geometry(const std::string& key, const Words& words);
+  void attribute(const Attribute& attribute, const Words& words);
+  void field(const Words& words);
+  void metadata();
+  void pass(const std::string& name, const std::string& type, std::uint64_t components, std::uint64_t tuples);
+  [[nodiscard]] bool pass_strings(std::uint64_t count);
+  void add(VtkArrayInfo info, const std::string& type, std::uint64_t components, std::uint64_t tuples, bool colours);
+
+  [[nodiscard]] InvalidInput wrong(const Words& words, std::string_view why) const {
+    return InvalidInput(
+        fmt::format("{}: VTK '{}': {}", file_.file, excerpt(fmt::format("{}", fmt::join(words, " "))), why));
+  }
+  [[nodiscard]] std::array<double, 3> triple(const Words& words) const;
+  [[nodiscard]] std::uint64_t whole(const Words& words, std::size_t index) const;
+
+  VtkLines lines_;
+  LegacyVtk file_;
+  std::vector<std::uint64_t> tuples_;  ///< of the arrays
+  std::optional<std::array<std::int64_t, 3>> sizes_;
+  std::array<double, 3> spacing_ = {1, 1, 1};
+  std::array<double, 3> origin_ = {0, 0, 0};
+  std::optional<bool> of_cells_;  ///< what attributes are now of
+  std::uint64_t count_ = 0;       ///< how many of these there are, as the file says
+  std::uint64_t components_ = 0;  ///< of the array before
 };
 
-DecodedValues read_fractions(NumberText& text, const LegacyVtk& header, const ReadOptions& options, const Run& run) {
-  const std::uint64_t count = header.lattice.count();
-  Fractions bytes(text, header.data.file, count);
-  return decode_scalars(bytes, header.data.layout, count, options, header.data.file, run);
+std::array<double, 3> Walk::triple(const Words& words) const {
+  if (words.size() != 4) throw wrong(words, "three numbers are needed");
+  std::array<double, 3> numbers{};
+  for (std::size_t i = 0; i < 3; ++i) {
+    const auto value = parse_real(words[i + 1]);
+    if (!value) throw wrong(words, fmt::format("'{}' is not a number", excerpt(words[i + 1])));
+    numbers.at(i) = *value;
+  }
+  return numbers;
 }
 
-VtkValues read_text(const LegacyVtk& header, const ReadOptions& options, const Run& run) {
-  const std::uint64_t count = header.lattice.count();
-  const std::string& path = header.data.file;
-  NumberText text(path, header.data.offset, kTextBlanks);
-  DecodedValues values = header.colours ? read_fractions(text, header, options, run)
-                                        : read_text_values(text, header.data.layout.type, count, options, path, run);
-  const std::vector<std::string> behind = words_at(path, text.offset());
-  if (!behind.empty() && parse_real(behind.front()))
-    throw IoError(
-        fmt::format("{}: {} numbers of data expected, more found: '{}'", path, count, excerpt(behind.front())));
-  return {std::move(values), attribute_of(behind)};
+std::uint64_t Walk::whole(const Words& words, std::size_t index) const {
+  if (index >= words.size() || !reads_as(ScalarType::kInt64, words[index]) || words[index].front() == '-')
+    throw wrong(words, fmt::format("a whole number is needed as word {}", index + 1));
+  return std::uint64_t(std::stoull(words[index]));
+}
+
+void Walk::start() {
+  if (!is_legacy_vtk(file_.file))
+    throw InvalidInput(fmt::format("{}: no legacy VTK file: '{}' is missing", file_.file, kMagic));
+  (void)lines_.line();
+  (void)lines_.line();  // the title, which may be empty
+  const auto needed = [&] {
+    Words words = lines_.words();
+    if (words.empty()) throw IoError(fmt::format("{}: the VTK header ends early", file_.file));
+    return words;
+  };
+  const std::string encoding = needed().front();
+  file_.text = lower_case(encoding) == "ascii";
+  if (!file_.text && lower_case(encoding) != "binary")
+    throw InvalidInput(
+        fmt::format("{}: VTK encoding '{}': allowed are BINARY and ASCII", file_.file, excerpt(encoding)));
+  const Words words = needed();
+  if (words.size() != 2 || lower_case(words[0]) != "dataset" || lower_case(words[1]) != "structured_points")
+    throw wrong(words, "supported is DATASET STRUCTURED_POINTS");
+}
+
+void Walk::part(const Words& words) {
+  const std::string key = lower_case(words.front());
+  if (geometry(key, words)) return;
+  if (key == "metadata") return metadata();
+  if (key == "field") return field(words);
+  if (key == "lookup_table") return pass(decoded(words.back()), "unsigned_char", 4, whole(words, 2));
+  const auto* const found =
+      std::find_if(kAttributes.begin(), kAttributes.end(), [&](const auto& known) { return key == known.keyword; });
+  if (found == kAttributes.end()) throw wrong(words, "this is no part of DATASET STRUCTURED_POINTS");
+  attribute(*found, words);
+}
+
+bool Walk::geometry(const std::string& key, const Words& words) {
+  if (key == "dimensions") {
+    (void)triple(words);
+    if (!std::all_of(words.begin() + 1, words.end(), [](const auto& w) { return reads_as(ScalarType::kInt64, w); }))
+      throw wrong(words, "three whole numbers are needed");
+    sizes_ = {std::stoll(words[1]), std::stoll(words[2]), std::stoll(words[3])};
+  } else if (key == "spacing" || key == "aspect_ratio") {
+    const auto spacing = triple(words);
+    require_spacing(file_.file, spacing);
+    spacing_ = spacing;
+  } else if (key == "origin") {
+    const auto origin = triple(words);
+    require_finite(file_.file, "the origin", origin);
+    origin_ = origin;
+  } else if (key == "point_data" || key == "cell_data") {
+    of_cells_ = key == "cell_data";
+    count_ = whole(words, 1);
+  } else {
+    return false;
+  }
+  return true;
+}
+
+void Walk::attribute(const Attribute& attribute, const Words& words) {
+  if (!of_cells_) throw wrong(words, "it stands without POINT_DATA or CELL_DATA before it");
+  const bool scalars = attribute.role == VtkRole::kScalars && attribute.type_word != 0;
+  const std::size_t last = std::max(attribute.type_word, attribute.component_word);
+  if (words.size() > last + 1 || words.size() < (scalars ? last : last + 1))
+    throw wrong(words,
+                scalars ? "SCALARS have a name, a type and at most a number of components" : "words are missing");
+  const std::uint64_t components = attribute.component_word > 0 && attribute.component_word < words.size()
+                                       ? whole(words, attribute.component_word)
+                                       : attribute.components;
+  if (scalars) {
+    const Words table = lines_.words();
+    if (table.empty() || lower_case(table.front()) != "lookup_table")
+      throw wrong(words, "SCALARS have a LOOKUP_TABLE line behind theirs");
+  }
+  const VtkArrayInfo info{.name = decoded(words[1]), .of_cells = *of_cells_, .role = attribute.role};
+  const bool colours = attribute.type_word == 0;
+  add(info, colours ? "unsigned_char" : words[attribute.type_word], components, count_, colours);
+}
+
+// NAME NUMBER, and so many arrays of any length, each with a line "NAME COMPONENTS TUPLES TYPE" before it.
+void Walk::field(const Words& words) {
+  const std::uint64_t arrays = whole(words, 2);
+  for (std::uint64_t i = 0; i < arrays; ++i) {
+    Words line = lines_.words();
+    if (!line.empty() && lower_case(line.front()) == "metadata") {
+      metadata();
+      line = lines_.words();
+    }
+    if (line.empty())
+      throw IoError(fmt::format("{}: VTK: {} arrays of a FIELD expected, {} found", file_.file, arrays, i));
+    if (lower_case(line.front()) == "null_array") continue;
+    if (line.size() != 4) throw wrong(line, "an array of a FIELD has a name, components, tuples and a type");
+    const std::uint64_t components = whole(line, 1);
+    const std::uint64_t tuples = whole(line, 2);
+    const VtkArrayInfo info{.name = decoded(line[0]), .of_cells = of_cells_.value_or(false)};
+    if (of_cells_)
+      add(info, line[3], components, tuples, false);
+    else
+      pass(info.name, line[3], components, tuples);
+  }
+}
+
+void Walk::add(VtkArrayInfo info, const std::string& type, std::uint64_t components, std::uint64_t tuples,
+               bool colours) {
+  const auto known = scalar_type(type);
+  if (components != 1) info.peculiarity += fmt::format(" ({} components)", components);
+  if (!known) info.peculiarity += fmt::format(" (type '{}')", excerpt(type));
+  info.plain = components == 1 && known;
+  const std::string name = info.name;
+  file_.arrays.push_back({std::move(info), known.value_or(ScalarType::kUint8), lines_.offset(), colours});
+  tuples_.push_back(tuples);
+  pass(name, type, components, tuples);
+}
+
+// What VTK notes of the array before: lines up to an empty one. Names of components may be empty lines.
+void Walk::metadata() {
+  for (auto line = lines_.line(); line; line = lines_.line()) {
+    const Words words = plain_words(*line);
+    if (words.empty()) return;
+    if (lower_case(words.front()) != "component_names") continue;
+    for (std::uint64_t i = 0; i < components_ && line; ++i) line = lines_.line();
+  }
+}
+
+void Walk::pass(const std::string& name, const std::string& type, std::uint64_t components, std::uint64_t tuples) {
+  components_ = components;
+  if (components > 0 && tuples > kMostValues / components)
+    throw InvalidInput(fmt::format("{}: VTK array '{}': {} components of {} are more values than a file holds",
+                                   file_.file, excerpt(name), components, tuples));
+  const std::uint64_t values = components * tuples;
+  const auto known = scalar_type(type);
+  const std::string kind = lower_case(type);
+  bool passed = false;
+  if (kind == "string" || kind == "utf8_string") {
+    passed = pass_strings(values);
+  } else if (file_.text) {
+    passed = lines_.skip_words(values);
+  } else if (known || kind == "bit") {
+    passed = lines_.skip_bytes(known ? values * bytes_per_scalar(*known) : (values + 7) / 8);
+  } else {
+    throw InvalidInput(fmt::format("{}: VTK array '{}': of type '{}', whose size is unknown", file_.file, excerpt(name),
+                                   excerpt(type)));
+  }
+  if (!passed) throw IoError(fmt::format("{}: the file ends within the VTK array '{}'", file_.file, excerpt(name)));
+}
+
+// As text a line each; else behind their length, whose first two bits tell how many bytes it has.
+bool Walk::pass_strings(std::uint64_t count) {
+  for (std::uint64_t i = 0; i < count; ++i) {
+    if (file_.text) {
+      if (!lines_.line()) return false;
+      continue;
+    }
+    const auto first = lines_.byte();
+    if (!first) return false;
+    std::uint64_t length = *first & 0x3Fu;
+    for (unsigned more = (1u << (3u - (*first >> 6u))) - 1; more > 0; --more) {
+      const auto next = lines_.byte();
+      if (!next) return false;
+      length = (length << 8u) | *next;
+    }
+    if (!lines_.skip_bytes(length)) return false;
+  }
+  return true;
+}
+
+LegacyVtk Walk::place() {
+  if (!sizes_) throw InvalidInput(fmt::format("{}: VTK has no DIMENSIONS", file_.file));
+  (void)checked_count(file_.file, *sizes_, 8);
+  const VtkExtent points{{}, {(*sizes_)[0] - 1, (*sizes_)[1] - 1, (*sizes_)[2] - 1}};
+  constexpr std::array<double, 9> kUpright = {1, 0, 0, 0, 1, 0, 0, 0, 1};
+  file_.points = detail::lattice_of(points, points, origin_, spacing_, kUpright);
+  file_.cells = detail::lattice_of(points, cells_of(points), origin_, spacing_, kUpright);
+  for (std::size_t i = 0; i < file_.arrays.size(); ++i) {
+    LegacyVtkArray& array = file_.arrays[i];
+    const std::uint64_t count = file_.lattice_of(array).count();
+    if (tuples_[i] == count) continue;
+    array.info.plain = false;
+    array.info.peculiarity += fmt::format(" ({} of them, DIMENSIONS make {})", tuples_[i], count);
+  }
+  return std::move(file_);
 }
 
 }  // namespace
 
 bool is_legacy_vtk(const std::string& path) { return first_bytes(path, kMagic.size()) == kMagic; }
 
-LegacyVtk read_legacy_vtk_header(const std::string& path) {
-  const std::uint64_t file_size = require_file(path);
-  if (!is_legacy_vtk(path)) throw InvalidInput(fmt::format("{}: no legacy VTK file: '{}' is missing", path, kMagic));
-  VtkHeader header(path);
-  (void)header.any_line();
-  (void)header.any_line();  // the title, which may be empty
-  const std::string encoding = header.line().front();
-  if (encoding != "binary" && encoding != "ascii")
-    throw InvalidInput(fmt::format("{}: VTK encoding '{}': allowed are BINARY and ASCII", path, excerpt(encoding)));
-  const auto words = header.line();
-  if (words.size() != 2 || words[0] != "dataset" || words[1] != "structured_points")
-    throw InvalidInput(
-        fmt::format("{}: VTK '{}': supported is DATASET STRUCTURED_POINTS", path, excerpt(words.back())));
-  LegacyVtk result;
-  result.text = encoding == "ascii";
-  const auto scalars = read_lattice(path, header, result.lattice);
-  result.colours = scalars.front() == kColours;
-  if (result.colours && (scalars.size() != 3 || scalars[2] != "1"))
-    throw InvalidInput(fmt::format("{}: VTK COLOR_SCALARS of {} components: a volume has one", path,
-                                   excerpt(scalars.size() == 3 ? scalars[2] : "no number of")));
-  if (scalars.size() < 3 || scalars.size() > 4 || (scalars.size() == 4 && scalars[3] != "1"))
-    throw InvalidInput(fmt::format("{}: VTK SCALARS need a name, a type and one component", path));
-  result.name = excerpt(scalars[1]);
-  if (!result.colours && header.line().front() != "lookup_table")
-    throw InvalidInput(fmt::format("{}: VTK SCALARS without a LOOKUP_TABLE line", path));
-  const ScalarType type = result.colours ? ScalarType::kUint8 : scalar_type(path, scalars[2]);
-  result.data = {.file = path, .offset = header.end(), .more_allowed = true, .layout = {type, true}};
-  const std::uint64_t count = result.lattice.count();
-  if (!result.text) require_room(result.data, count);
-  if (result.text && count > file_size)
-    throw IoError(fmt::format("{}: {} numbers of data expected in {} bytes", path, count, file_size));
-  return result;
-}
-
-VtkValues read_legacy_vtk_values(const LegacyVtk& header, const ReadOptions& options, const Run& run) {
-  if (header.text) return read_text(header, options, run);
-  const DataPlace& place = header.data;
-  const std::uint64_t count = header.lattice.count();
-  return {read_values(place, count, options, run),
-          attribute_of(words_at(place.file, place.offset + count * bytes_per_scalar(place.layout.type)))};
+LegacyVtk read_legacy_vtk(const std::string& path) {
+  (void)require_file(path);
+  return Walk(path).follow();
 }
 
 }  // namespace isolux::detail

@@ -116,6 +116,10 @@ TEST(Fuzz, LegacyVtkHeaders) {
   fuzz("a.vtk", binary + test::bytes_of(test::ramp()), binary.size(), 500 * test::stress());
   const std::string text = test::vtk_header("ASCII") + "0 1 2 3 4 5 6 7 8 9 10 11";
   fuzz("a.vtk", text, text.size(), 250 * test::stress());
+  for (const bool as_text : {false, true}) {
+    const std::string arrays = test::vtk_arrays_sample(as_text);
+    fuzz("a.vtk", arrays, arrays.size() - 24, 500 * test::stress());
+  }
 }
 
 TEST(Fuzz, VtkXmlFiles) {

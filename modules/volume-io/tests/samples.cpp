@@ -57,4 +57,19 @@ std::string vti_coded(const std::string& data, const VtiCode& code) {
   return code.base64 ? base64(header) + base64(blocks) : header + blocks;
 }
 
+std::string vtk_arrays_sample(bool text) {
+  const auto numbers = [&](int count) {
+    std::string words;
+    for (const auto value : ramp(count)) words += fmt::format("{} ", value);
+    return (text ? words : bytes_of(ramp(count), true)) + "\n";
+  };
+  return std::string("# vtk DataFile Version 5.1\ntitle\n") + (text ? "ASCII" : "BINARY") +
+         "\nDATASET STRUCTURED_POINTS\nFIELD FieldData 1\nnotes 1 2 string\n" +
+         (text ? "a%20b\nc\n" : std::string("\xC3") + "a b\xC1" + "c\n") +
+         "DIMENSIONS 3 2 2\nSPACING 0.5 2 4\nORIGIN 10 20 30\nCELL_DATA 2\nSCALARS c short\nLOOKUP_TABLE default\n" +
+         numbers(2) + "POINT_DATA 12\nVECTORS v short\n" + numbers(36) +
+         "METADATA\nCOMPONENT_NAMES\nx\n\nz\n\nFIELD FieldData 1\nf 2 12 short\n" + numbers(24) +
+         "SCALARS s short\nLOOKUP_TABLE t\n" + numbers(12);
+}
+
 }  // namespace isolux::test

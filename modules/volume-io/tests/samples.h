@@ -62,6 +62,9 @@ inline std::string vtk_header(const std::string& encoding) {
          "SCALARS s short 1\nLOOKUP_TABLE default\n";
 }
 
+/// A file of several arrays, strings among them; the ramp is the scalars of points behind the others.
+std::string vtk_arrays_sample(bool text);
+
 /// What a test changes of a VTK XML file. Its array is `ramp` as text.
 struct VtiParts {
   std::string file = R"(type="ImageData" version="1.0" byte_order="LittleEndian")";

@@ -109,8 +109,14 @@ TEST_F(LegacyVtk, IsRefusedWhereItIsHostile) {
   EXPECT_THAT(edited("0.5 2 4", "0 2 4"), HasSubstr("other than 0"));
   EXPECT_THAT(edited("10 20 30", "10 inf 30"), HasSubstr("finite numbers"));
   EXPECT_THAT(edited("POINT_DATA 12", "POINT_DATA 13"), HasSubstr("DIMENSIONS make 12"));
-  EXPECT_THAT(edited("s short 1", "s short 3"), HasSubstr("one component"));
-  EXPECT_THAT(edited("s short 1", "s bit 1"), HasSubstr("supported are"));
+  EXPECT_THAT(edited("s short 1", "s unsigned_char 2"), HasSubstr("there is 's' (2 components)"));
+  EXPECT_THAT(edited("s short 1\nLOOKUP_TABLE default\n" + data, "s bit 1\nLOOKUP_TABLE default\n01"),
+              HasSubstr("there is 's' (type 'bit')"));
+  EXPECT_THAT(edited("s short 1", "s complex 1"), HasSubstr("'s': of type 'complex'"));
+  EXPECT_THAT(edited("s short 1", "s short -1"), HasSubstr("a whole number is needed"));
+  EXPECT_THAT(edited("s short 1", "s"), HasSubstr("SCALARS have a name, a type"));
+  EXPECT_THAT(edited("LOOKUP_TABLE default\n", ""), HasSubstr("LOOKUP_TABLE"));
+  EXPECT_THAT(edited("SCALARS s", "SCALAR s"), HasSubstr("no part of DATASET STRUCTURED_POINTS"));
   EXPECT_THAT(edited("STRUCTURED_POINTS", "POLYDATA"), HasSubstr("supported is DATASET STRUCTURED_POINTS"));
   EXPECT_THAT(edited("3 2 2", "3.7 2 2"), HasSubstr("three whole numbers are needed"));
   EXPECT_THAT(edited("3 2 2", "3e0 2 2"), HasSubstr("three whole numbers are needed"));
@@ -130,25 +136,6 @@ TEST_F(LegacyVtk, MayHaveNanAndInfinitiesAsText) {
     EXPECT_EQ(values[2], std::numeric_limits<float>::infinity());
     EXPECT_EQ(values[3], -std::numeric_limits<float>::infinity());
     EXPECT_EQ(values[4], 4.0f);
-  }
-}
-
-TEST_F(LegacyVtk, SaysWhatIsLeftOutBehindItsScalars) {
-  std::string text;
-  for (int i = 0; i < 12; ++i) text += fmt::format("{} ", i);
-  const std::string metadata = "\nMETADATA\nINFORMATION 1\nNAME L2_NORM_RANGE LOCATION vtkDataArray\nDATA 2 0 11\n\n";
-  for (const std::string& data :
-       {test::vtk_header("BINARY") + test::bytes_of(test::ramp(), true), test::vtk_header("ASCII") + text}) {
-    for (const std::string& between : {std::string("\n"), metadata}) {
-      const auto remarks = [&](const std::string& more) {
-        return read_volume(folder_.write("a.vtk", data + between + more)).remarks;
-      };
-      EXPECT_TRUE(remarks("").empty());
-      EXPECT_TRUE(remarks("LOOKUP_TABLE t 1\n1 1 1 1\n").empty());
-      for (const std::string attribute : {"VECTORS v", "SCALARS Temperature", "FIELD FieldData", "CELL_DATA 2"})
-        EXPECT_THAT(remarks(attribute + " float\n0 0 0\n"),
-                    ::testing::ElementsAre(HasSubstr("a.vtk: its first SCALARS, 's', are read; " + attribute)));
-    }
   }
 }
 

@@ -1,5 +1,6 @@
 #include "../data_place.h"
 #include "../files.h"
+#include "../half_values.h"
 #include "../header_bytes.h"
 #include "../make_volume.h"
 
@@ -74,29 +75,6 @@ Mode mode_of(const std::string& path, const HeaderBytes& header) {
       throw InvalidInput(fmt::format(
           "{}: MRC mode {}: supported are 0 (int8), 1 (int16), 2 (float32), 6 (uint16) and 12 (float16)", path, mode));
   }
-}
-
-// IEEE 754's binary16: a sign, 5 bits of exponent, 10 of mantissa.
-float float_of_half(std::uint16_t bits) {
-  const int exponent = bits >> 10 & 31;
-  const int mantissa = bits & 1023;
-  float size = std::ldexp(float(exponent > 0 ? mantissa + 1024 : mantissa), std::max(exponent, 1) - 25);
-  if (exponent == 31) size = mantissa == 0 ? std::numeric_limits<float>::infinity() : std::nanf("");
-  return (bits & 0x8000) != 0 ? -size : size;
-}
-
-detail::DecodedValues read_halves(const detail::DataPlace& place, std::uint64_t count, const ReadOptions& options,
-                                  const Run& run) {
-  ReadOptions as_bits = options;
-  as_bits.form = VoxelForm::kStored;
-  as_bits.subtract = 0.0;
-  as_bits.nodata.reset();
-  detail::AsWanted as_wanted(options, true);
-  const auto bits = std::get<std::vector<std::uint16_t>>(detail::read_values(place, count, as_bits, run).list);
-  std::vector<float> values;
-  values.reserve(count);
-  for (const std::uint16_t half : bits) values.push_back(float(as_wanted(double(float_of_half(half)))));
-  return {std::move(values), options.subtract != 0.0, as_wanted.found_nodata()};
 }
 
 // Stacks lie in a file as one volume does (Cheng et al., section 3.2): NZ is of all, MZ of one.
@@ -254,7 +232,7 @@ class MrcReader final : public VolumeReader {
     require_one_volume(source, header, options.spacing.has_value());
     const auto order = axis_order(source, header);
     const Lattice lattice = lattice_of(source, header, order, options.spacing.has_value());
-    auto values = mode.halves ? read_halves(place, lattice.count(), options, run)
+    auto values = mode.halves ? detail::read_halves(place, lattice.count(), options, run)
                               : detail::read_values(place, lattice.count(), options, run);
     values.list = in_xyz_order(std::move(values.list), lattice, order);
     StoredVolume volume = detail::make_volume(

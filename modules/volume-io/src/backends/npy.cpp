@@ -1,5 +1,6 @@
 #include "../data_place.h"
 #include "../files.h"
+#include "../half_values.h"
 #include "../header_bytes.h"
 #include "../make_volume.h"
 #include "../plain_text.h"
@@ -54,8 +55,15 @@ std::string value_of(const std::string& path, const std::string& header, const c
   return match[1];
 }
 
-detail::ScalarLayout layout_of(const std::string& path, const std::string& descr) {
-  constexpr std::array<std::pair<std::string_view, ScalarType>, 10> kTypes{{{"i1", ScalarType::kInt8},
+/// Numbers of an array: halves lie in `layout` as whole numbers of their size.
+struct NpyType {
+  detail::ScalarLayout layout;
+  bool halves = false;
+};
+
+NpyType type_of(const std::string& path, const std::string& descr) {
+  constexpr std::array<std::pair<std::string_view, ScalarType>, 12> kTypes{{{"b1", ScalarType::kUint8},
+                                                                            {"i1", ScalarType::kInt8},
                                                                             {"u1", ScalarType::kUint8},
                                                                             {"i2", ScalarType::kInt16},
                                                                             {"u2", ScalarType::kUint16},
@@ -63,6 +71,7 @@ detail::ScalarLayout layout_of(const std::string& path, const std::string& descr
                                                                             {"u4", ScalarType::kUint32},
                                                                             {"i8", ScalarType::kInt64},
                                                                             {"u8", ScalarType::kUint64},
+                                                                            {"f2", ScalarType::kUint16},
                                                                             {"f4", ScalarType::kFloat32},
                                                                             {"f8", ScalarType::kFloat64}}};
   const std::string_view type = std::string_view(descr).substr(std::min<std::size_t>(1, descr.size()));
@@ -70,9 +79,21 @@ detail::ScalarLayout layout_of(const std::string& path, const std::string& descr
       std::find_if(kTypes.begin(), kTypes.end(), [&](const auto& known) { return known.first == type; });
   if (found == kTypes.end())
     throw InvalidInput(fmt::format(
-        "{}: .npy of type '{}': read are int8 to int64, uint8 to uint64, float32 and float64 (array.astype)", path,
-        detail::excerpt(descr)));
-  return {found->second, descr.front() == '>'};
+        "{}: .npy of type '{}': read are bool, int8 to int64, uint8 to uint64 and float16 to float64 (array.astype)",
+        path, detail::excerpt(descr)));
+  return {{found->second, descr.front() == '>'}, type == "f2"};
+}
+
+/// Leaves out axes of one sample, as of channels or time, until three are left: those in front, then those at the end,
+/// then others.
+void leave_out_single(std::vector<std::int64_t>& sizes) {
+  while (sizes.size() > 3) {
+    auto single = sizes.begin();
+    if (*single != 1) single = sizes.end() - 1;
+    if (*single != 1) single = std::find(sizes.begin(), sizes.end(), 1);
+    if (single == sizes.end()) return;
+    sizes.erase(single);
+  }
 }
 
 /// The sizes along x, y and z: the last index is the fastest in C's order, the first in Fortran's.
@@ -85,9 +106,11 @@ std::array<std::int64_t, 3> sizes_of(const std::string& path, const std::string&
     const auto read = std::from_chars(digits.data(), digits.data() + digits.size(), size);
     sizes.push_back(read.ec == std::errc() ? size : -1);
   }
+  leave_out_single(sizes);
   if (sizes.size() != 3)
     throw InvalidInput(
-        fmt::format("{}: .npy of shape ({}): an array of three axes is needed", path, detail::excerpt(shape)));
+        fmt::format("{}: .npy of shape ({}): an array of three axes is needed, beside those of one sample", path,
+                    detail::excerpt(shape)));
   if (!fortran_order) std::reverse(sizes.begin(), sizes.end());
   return {sizes[0], sizes[1], sizes[2]};
 }
@@ -112,13 +135,16 @@ class NpyReader final : public VolumeReader {
     detail::DataPlace place;
     place.file = source;
     place.offset = header.data;
-    place.layout = layout_of(source, value_of(source, header.text, "descr", "['\"]([^'\"]*)['\"]"));
+    const NpyType type = type_of(source, value_of(source, header.text, "descr", "['\"]([^'\"]*)['\"]"));
+    place.layout = type.layout;
     const bool fortran_order = value_of(source, header.text, "fortran_order", "(True|False)") == "True";
     const auto sizes = sizes_of(source, value_of(source, header.text, "shape", "\\(([0-9, ]*)\\)"), fortran_order);
     const std::uint64_t count = detail::checked_count(source, sizes, bytes_per_scalar(place.layout.type));
-    auto values = detail::read_values(place, count, options, run);
+    auto values =
+        type.halves ? detail::read_halves(place, count, options, run) : detail::read_values(place, count, options, run);
     const Lattice lattice{.size = Index3(int(sizes[0]), int(sizes[1]), int(sizes[2])), .frame = {}};
-    return detail::make_volume(source, lattice, std::move(values), place.layout.type, "3D-right-handed", options);
+    return detail::make_volume(source, lattice, std::move(values),
+                               type.halves ? ScalarType::kFloat32 : place.layout.type, "3D-right-handed", options);
   }
 };
 

@@ -2,6 +2,7 @@
 #include "../format_checks.h"
 #include "../make_volume.h"
 #include "../plain_text.h"
+#include "../vtk_choice.h"
 #include "../vtk_extent.h"
 #include "../vtk_xml_array.h"
 #include "../vtk_xml_text.h"
@@ -13,7 +14,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cstring>
 #include <optional>
 #include <pugixml.hpp>
 
@@ -21,7 +21,6 @@ namespace isolux {
 namespace {
 
 constexpr const char* kSections[] = {"PointData", "CellData"};
-constexpr std::size_t kMostNamed = 10;
 
 std::string shown(const pugi::xml_node& node, const char* attribute) {
   return detail::excerpt(node.attribute(attribute).value());
@@ -49,16 +48,19 @@ detail::VtkExtent extent(const std::string& path, const pugi::xml_node& node, co
 struct ArrayName {
   const char* section = nullptr;
   std::string name;
-  [[nodiscard]] bool operator==(const ArrayName& other) const {
-    return std::strcmp(section, other.section) == 0 && name == other.name;
-  }
   [[nodiscard]] bool of_cells() const { return section == kSections[1]; }
 };
 
-/// What a message calls an array.
-std::string described(const ArrayName& array, const pugi::xml_node& node) {
-  std::string text = fmt::format("'{}'", detail::excerpt(array.name));
-  if (array.of_cells()) text += " of cells";
+/// One number a voxel.
+bool is_plain(const pugi::xml_node& node) {
+  const auto components = node.attribute("NumberOfComponents");
+  return (!components || components.value() == std::string("1")) &&
+         detail::vtk_xml_type(node.attribute("type").value());
+}
+
+/// What a message adds to an array's name.
+std::string peculiarity(const pugi::xml_node& node) {
+  std::string text;
   if (const auto components = node.attribute("NumberOfComponents");
       components && components.as_string() != std::string("1"))
     text += fmt::format(" ({} components)", shown(node, "NumberOfComponents"));
@@ -66,48 +68,25 @@ std::string described(const ArrayName& array, const pugi::xml_node& node) {
   return text;
 }
 
-/// One number a voxel, and none of VTK's marks of hidden points.
-bool is_plain(const pugi::xml_node& node) {
-  const auto components = node.attribute("NumberOfComponents");
-  return (!components || components.value() == std::string("1")) &&
-         detail::vtk_xml_type(node.attribute("type").value()) &&
-         node.attribute("Name").value() != std::string("vtkGhostType");
-}
-
-struct Choice {
-  ArrayName array;
-  std::vector<std::string> left_out;
-};
-
-/// The array to read: the one of a name or, without one, the first that will do, the active scalars before others and
-/// those of points before those of cells. \throw InvalidInput naming those that there are
-Choice chosen_array(const std::string& path, const pugi::xml_node& piece, const std::string& wanted) {
-  std::optional<ArrayName> found;
-  std::vector<std::pair<ArrayName, std::string>> all;
+std::vector<detail::VtkArrayInfo> arrays_of(const pugi::xml_node& piece) {
+  std::vector<detail::VtkArrayInfo> arrays;
   for (const char* section : kSections) {
     const pugi::xml_node data = piece.child(section);
     const std::string active = data.attribute("Scalars").value();
-    const bool found_before = found.has_value();
+    const std::string ids[] = {data.attribute("GlobalIds").value(), data.attribute("PedigreeIds").value()};
     for (const pugi::xml_node& node : data.children("DataArray")) {
-      const ArrayName array{section, node.attribute("Name").value()};
-      all.emplace_back(array, described(array, node));
-      if (!is_plain(node) || (!wanted.empty() && array.name != wanted)) continue;
-      if (!found || (!found_before && array.name == active && found->name != active)) found = array;
+      const std::string name = node.attribute("Name").value();
+      const bool of_ids = !name.empty() && (name == ids[0] || name == ids[1]);
+      arrays.push_back({.name = name,
+                        .of_cells = section == kSections[1],
+                        .role = name == active ? detail::VtkRole::kScalars
+                                : of_ids       ? detail::VtkRole::kIds
+                                               : detail::VtkRole::kOther,
+                        .plain = is_plain(node),
+                        .peculiarity = peculiarity(node)});
     }
   }
-  Choice choice;
-  for (const auto& [array, description] : all)
-    if (!found || !(array == *found)) choice.left_out.push_back(description);
-  if (const std::size_t count = choice.left_out.size(); count > kMostNamed) {
-    choice.left_out.resize(kMostNamed);
-    choice.left_out.push_back(fmt::format("{} more", count - kMostNamed));
-  }
-  if (!found)
-    throw InvalidInput(fmt::format("{}: VTK XML: {} of one number a point or cell is needed; there {}", path,
-                                   wanted.empty() ? "an array" : fmt::format("an array '{}'", detail::excerpt(wanted)),
-                                   all.empty() ? "is none" : fmt::format("is {}", fmt::join(choice.left_out, ", "))));
-  choice.array = *found;
-  return choice;
+  return arrays;
 }
 
 /// The file's XML and what holds for all of its arrays.
@@ -252,21 +231,21 @@ class VtiReader final : public VolumeReader {
   [[nodiscard]] StoredVolume read(const std::string& source, const ReadOptions& options,
                                   const Run& run) const override {
     std::optional<VtiFile> file(std::in_place, source);
-    const Choice choice = chosen_array(source, file->image().child("Piece"), options_.array);
+    const auto arrays = arrays_of(file->image().child("Piece"));
+    const detail::VtkChoice choice = detail::choose_vtk_array(source, arrays, options_.array);
+    const detail::VtkArrayInfo& array = arrays[choice.array];
     const detail::VtkExtent points = extent(source, file->image(), "WholeExtent");
-    const detail::VtkExtent voxels = choice.array.of_cells() ? detail::cells_of(points) : points;
-    const auto pieces = pieces_of(source, *file, choice.array, voxels);
+    const detail::VtkExtent voxels = array.of_cells ? detail::cells_of(points) : points;
+    const auto pieces = pieces_of(source, *file, {kSections[array.of_cells ? 1 : 0], array.name}, voxels);
     const ScalarType type = pieces[0].array.layout.type;
     const std::uint64_t count = detail::checked_count(source, voxels.sizes(), bytes_per_scalar(type));
     const Lattice lattice = lattice_of_image(source, file->image(), points, voxels);
     file.reset();  // its text may be as large as the values
     auto values = read_pieces(source, pieces, voxels, count, options, run);
     auto volume = detail::make_volume(source, lattice, std::move(values), type, "3D-right-handed", options);
-    if (options_.array.empty() && !choice.left_out.empty())
-      volume.remarks.push_back(
-          fmt::format("{}: the array '{}'{} is read, not {}; --set-reader vti.array=NAME reads another", source,
-                      detail::excerpt(choice.array.name), choice.array.of_cells() ? " of cells" : "",
-                      fmt::join(choice.left_out, ", ")));
+    if (std::string remark = detail::remark_on_choice(source, "vti", array, choice);
+        options_.array.empty() && !remark.empty())
+      volume.remarks.push_back(std::move(remark));
     return volume;
   }
 
