@@ -25,31 +25,39 @@ Seeds volumes() {
       "space: LPS\nspace directions: (1,0,0) (0,1,0) (0,0,1)\nspace origin: (0,0,0)\nkey:=value\n";
   const std::string ramp = test::bytes_of(test::ramp());
   const std::string numbers = "0 1 2 3 4 5 6 7 8 9 10 11";
-  return {{"raw.nrrd", head + "encoding: raw\n" + frame + "\n" + ramp},
-          {"gzip.nrrd", head + "encoding: gzip\n" + frame + "\n" + test::gzipped(ramp)},
-          {"text.nrrd", head + "encoding: ascii\n" + frame + "\n" + numbers},
-          {"detached.nhdr", head + "encoding: raw\n" + frame + "data file: data.raw\n"},
-          {"spacings.nrrd",
-           "NRRD0001\ntype: float\ndimension: 4\nsizes: 1 2 2 2\nkinds: scalar domain domain domain\n"
-           "spacings: nan 1 2 .5\nbyte skip: -1\nendian: big\nencoding: raw\n\n" +
-               test::bytes_of(std::vector<float>{0, 1, 2, 3, 4, 5, 6, 7}, true)},
-          {"a.nii", test::nifti_sample()},
-          {"big.nii", test::nifti_sample(true)},
-          {"a.nii.gz", test::gzipped(test::nifti_sample())},
-          {"a.mrc", test::mrc_sample()},
-          {"big.mrc", test::mrc_sample(true)},
-          {"a.mrc.gz", test::gzipped(test::mrc_sample())},
-          {"a.npy", test::npy_sample("<i2", "(2, 2, 3)")},
-          {"fortran.npy", test::npy_sample(">i2", "(3, 2, 2)", true)},
-          {"half.npy", test::npy_sample("<f2", "(1, 2, 2, 3)")},
-          {"a.vtk", test::vtk_header("BINARY") + ramp},
-          {"text.vtk", test::vtk_header("ASCII") + numbers},
-          {"arrays.vtk", test::vtk_arrays_sample(false)},
-          {"text_arrays.vtk", test::vtk_arrays_sample(true)},
-          {"a.vti", test::vti_sample()},
-          {"zlib.vti", test::vti_zlib_sample()},
-          {"raw.vti", test::vti_raw_sample()},
-          {"vtk.vti", test::kVtkAppendedBase64ZlibWideBigEndian}};
+  return {
+      {"raw.nrrd", head + "encoding: raw\n" + frame + "\n" + ramp},
+      {"gzip.nrrd", head + "encoding: gzip\n" + frame + "\n" + test::gzipped(ramp)},
+      {"text.nrrd", head + "encoding: ascii\n" + frame + "\n" + numbers},
+      {"detached.nhdr", head + "encoding: raw\n" + frame + "data file: data.raw\n"},
+      {"spacings.nrrd",
+       "NRRD0001\ntype: float\ndimension: 4\nsizes: 1 2 2 2\nkinds: scalar domain domain domain\n"
+       "spacings: nan 1 2 .5\nbyte skip: -1\nendian: big\nencoding: raw\n\n" +
+           test::bytes_of(std::vector<float>{0, 1, 2, 3, 4, 5, 6, 7}, true)},
+      {"vectors.nrrd",
+       "NRRD0004\ntype: uchar\ndimension: 4\nsizes: 3 2 2 2\nkinds: list domain domain domain\nencoding: raw\n\n" +
+           ramp},
+      {"text_times.nrrd",
+       "NRRD0004\ntype: uchar\ndimension: 4\nsizes: 1 2 2 3\nkinds: domain domain domain time\nencoding: ascii\n\n" +
+           numbers},
+      {"a.nii", test::nifti_sample()},
+      {"big.nii", test::nifti_sample(true)},
+      {"a.nii.gz", test::gzipped(test::nifti_sample())},
+      {"a.mrc", test::mrc_sample()},
+      {"big.mrc", test::mrc_sample(true)},
+      {"a.mrc.gz", test::gzipped(test::mrc_sample())},
+      {"a.npy", test::npy_sample("<i2", "(2, 2, 3)")},
+      {"fortran.npy", test::npy_sample(">i2", "(3, 2, 2)", true)},
+      {"times.npy", test::npy_sample("<i1", "(2, 3, 2, 2)")},
+      {"half.npy", test::npy_sample("<f2", "(1, 2, 2, 3)")},
+      {"a.vtk", test::vtk_header("BINARY") + ramp},
+      {"text.vtk", test::vtk_header("ASCII") + numbers},
+      {"arrays.vtk", test::vtk_arrays_sample(false)},
+      {"text_arrays.vtk", test::vtk_arrays_sample(true)},
+      {"a.vti", test::vti_sample()},
+      {"zlib.vti", test::vti_zlib_sample()},
+      {"raw.vti", test::vti_raw_sample()},
+      {"vtk.vti", test::kVtkAppendedBase64ZlibWideBigEndian}};
 }
 
 /// Behind a byte of options and their name.

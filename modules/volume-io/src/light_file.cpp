@@ -273,7 +273,7 @@ LightFile read_light(const std::string& path) {
   light.path = path;
   light.grid.channels = int(axis.channels);
   light.grid.lattice = detail::nrrd_frame(header, std::span(header.axes).last(3)).lattice;
-  auto values = std::get<std::vector<float>>(detail::read_nrrd_values(header, {}, {}).list);
+  auto values = std::get<std::vector<float>>(detail::read_nrrd_values(header, {}, {}, {}).list);
   if (!std::all_of(values.begin(), values.end(), [](float v) { return std::isfinite(v); }))
     throw InvalidInput(fmt::format("{}: a light file's values are finite; this has others", path));
   if (axis.sides == 2) light.inner = light.grid;

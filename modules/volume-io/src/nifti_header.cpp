@@ -13,6 +13,7 @@
 #include <glm/geometric.hpp>
 #include <optional>
 #include <span>
+#include <vector>
 
 namespace isolux::detail {
 namespace {
@@ -232,17 +233,12 @@ IndexToWorld frame_of(const std::string& path, const Fields& f) {
   return frame;
 }
 
-std::array<std::int64_t, 3> sizes_of(const std::string& path, const Fields& f) {
+/// Of all axes; the first three are of space.
+std::vector<std::int64_t> sizes_of(const std::string& path, const Fields& f) {
   if (f.dim[0] < 1 || f.dim[0] > 7)
     throw InvalidInput(fmt::format("{}: NIfTI dim[0] is {}: allowed is 1 to 7", path, f.dim[0]));
-  std::array<std::int64_t, 3> sizes{1, 1, 1};
-  for (std::int64_t i = 1; i <= f.dim[0]; ++i) {
-    const std::int64_t size = f.dim.at(std::size_t(i));
-    if (i <= 3) sizes.at(std::size_t(i) - 1) = size;
-    if (i > 3 && size != 1)
-      throw InvalidInput(
-          fmt::format("{}: {} samples on axis {}: a volume has 3 axes, one number a voxel", path, size, i));
-  }
+  std::vector<std::int64_t> sizes(f.dim.begin() + 1, f.dim.begin() + 1 + f.dim[0]);
+  sizes.resize(std::max<std::size_t>(sizes.size(), 3), 1);
   return sizes;
 }
 
@@ -264,7 +260,7 @@ bool is_nifti(const std::string& path) {
   }
 }
 
-NiftiHeader read_nifti_header(const std::string& path) {
+NiftiHeader read_nifti_header(const std::string& path, int frame) {
   (void)require_file(path);
   const std::string bytes = first_inflated(path, kHeader2);
   const auto found = version(bytes);
@@ -274,7 +270,8 @@ NiftiHeader read_nifti_header(const std::string& path) {
   if (found->pair)
     throw InvalidInput(fmt::format("{}: the header of a NIfTI pair (.hdr and .img): supported are single files", path));
   Fields f = fields(HeaderBytes(bytes, found->big_endian), found->second);
-  const auto sizes = sizes_of(path, f);
+  const auto all_sizes = sizes_of(path, f);
+  const std::array<std::int64_t, 3> sizes = {all_sizes[0], all_sizes[1], all_sizes[2]};
   fill_spacing(sizes, f);
   const ScalarType type = scalar_type(path, f.datatype);
   const std::size_t width = bytes_per_scalar(type);
@@ -291,7 +288,12 @@ NiftiHeader read_nifti_header(const std::string& path) {
     header.data.slope = f.scale[0];
     header.data.intercept = f.scale[1];
   }
-  require_room(header.data, checked_count(path, sizes, width));
+  const std::uint64_t count = checked_count(path, sizes, width);
+  const std::uint64_t volumes = checked_count(path, all_sizes, width) / count;
+  const auto what = all_sizes.size() > 4 ? fmt::format("{} volumes along axes 4 to {}", volumes, all_sizes.size())
+                                         : fmt::format("{} volumes along axis 4", volumes);
+  header.data.frames = {volumes, count, wanted_frame(path, "nifti", frame, volumes, what)};
+  require_room(header.data, count);
   header.lattice.size = {int(sizes[0]), int(sizes[1]), int(sizes[2])};
   return header;
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "frames.h"
 #include "nrrd_text.h"
 #include "scalars.h"
 
@@ -45,9 +46,10 @@ struct NrrdHeader {
 /// \throw IoError, InvalidInput naming the file, the field, its value and what is allowed
 [[nodiscard]] NrrdHeader read_nrrd_header(const std::string& path, const ReadOptions& options);
 
-/// The values of all axes, in ReadOptions::form and less ReadOptions::subtract; floats where they are written as text.
-/// \throw IoError, InvalidInput, Cancelled
-[[nodiscard]] DecodedValues read_nrrd_values(const NrrdHeader& header, const ReadOptions& options, const Run& run);
+/// The values of one of the volumes that all axes make, in ReadOptions::form and less ReadOptions::subtract; floats
+/// where they are written as text. \throw IoError, InvalidInput, Cancelled
+[[nodiscard]] DecodedValues read_nrrd_values(const NrrdHeader& header, const Frames& frames, const ReadOptions& options,
+                                             const Run& run);
 
 /// The lattice of three of the axes, in LPS where the space is anatomical, and its space's name as Volume has it.
 /// \throw InvalidInput for directions that span no volume

@@ -50,7 +50,8 @@ TEST(Mrc, RefusesStacksOfVolumesAndOfImages) {
     test::put(bytes, 88, group);
     return folder.write("a.mrc", bytes);
   };
-  EXPECT_THAT(test::reading_error(with(401, 1)), HasSubstr("a.mrc: a stack of 2 volumes of 1 sections (ISPG 401)"));
+  EXPECT_THAT(test::reading_error(with(401, 1)),
+              HasSubstr("a.mrc: a stack of 2 volumes (ISPG 401): --set-reader mrc.frame=K"));
   EXPECT_THAT(test::reading_error(with(0, 1)), HasSubstr("a.mrc: a stack of 2 images (ISPG 0, MZ 1)"));
   ReadOptions spaced;
   spaced.spacing = Vec3(1, 2, 3);

@@ -72,7 +72,7 @@ TEST(Npy, RefusesWhatIsNoArrayOfThreeAxesOfNumbers) {
     return test::reading_error(folder.write("a.npy", header + test::bytes_of(test::ramp())), {});
   };
   EXPECT_THAT(says(test::npy_header("<i2", "(12,)")), HasSubstr("three axes"));
-  EXPECT_THAT(says(test::npy_header("<i2", "(2, 2, 2, 3)")), HasSubstr("three axes"));
+  EXPECT_THAT(says(test::npy_header("<i2", "(2, 2, 2, 2, 3)")), HasSubstr("three axes"));
   EXPECT_THAT(says(test::npy_header("<i2", "(1, 12)")), HasSubstr("three axes"));
   EXPECT_THAT(says(test::npy_header("<f16", "(2, 2, 3)")), HasSubstr("'<f16'"));
   EXPECT_THAT(says(test::npy_header("<c8", "(2, 2, 3)")), HasSubstr("'<c8'"));

@@ -277,7 +277,7 @@ TEST(Nrrd, RefusesHostileHeadersInWords) {
       {header(type + raw + kSmall + "space: 3D-sideways\n") + "abcd", "supported are left-posterior-superior"},
       {header(type + raw + kSmall + "space dimension: 4\n"), "supported is 3"},
       {header(type + raw + kSmall + "space: LPS\nspace origin: (0,0,inf)\n") + "abcd", "finite numbers"},
-      {header(type + raw + "dimension: 4\nsizes: 3 2 2 2\nkinds: RGB-color domain domain domain\n"), "a volume has 3"},
+      {header(type + raw + "dimension: 4\nsizes: 3 2 2 2\nkinds: RGB-color domain domain domain\n"), "nrrd.frame=K"},
       {header(type + raw + "dimension: 2\nsizes: 3 2\n"), "a volume has 3"},
       {header(type + raw + "dimension: 1\nsizes: 3\n"), "a volume has 3"},
       {header(type + raw + kSmall + "data file: LIST\n"), "join them first"},

@@ -77,21 +77,26 @@ Mode mode_of(const std::string& path, const HeaderBytes& header) {
   }
 }
 
-// Stacks lie in a file as one volume does (Cheng et al., section 3.2): NZ is of all, MZ of one.
-void require_one_volume(const std::string& path, const HeaderBytes& header, bool spacing_given) {
+// How many volumes there are. Stacks lie in a file as one volume does (Cheng et al., section 3.2): NZ is of all, MZ of
+// one.
+std::uint64_t volumes_of(const std::string& path, const HeaderBytes& header, bool spacing_given) {
   const auto group = header.get<std::int32_t>(88);
   const auto sections = header.get<std::int32_t>(8);
   const auto of_each = header.get<std::int32_t>(36);
   constexpr std::int32_t kVolumeStack = 401;
   constexpr std::int32_t kLastStack = 630;
-  if (group >= kVolumeStack && group <= kLastStack && of_each > 0 && sections > of_each)
-    throw InvalidInput(fmt::format("{}: a stack of {} volumes of {} sections (ISPG {}): a file of one is needed", path,
-                                   double(sections) / double(of_each), of_each, group));
+  if (group >= kVolumeStack && group <= kLastStack && of_each > 0 && sections > of_each) {
+    if (sections % of_each != 0)
+      throw InvalidInput(fmt::format("{}: {} sections of a stack of volumes of {} (ISPG {}): they are no whole number",
+                                     path, sections, of_each, group));
+    return std::uint64_t(sections / of_each);
+  }
   if (group == 0 && of_each == 1 && sections > 1 && !spacing_given)
     throw InvalidInput(
         fmt::format("{}: a stack of {} images (ISPG 0, MZ 1), not a volume: --spacing reads them as the "
                     "sections of one",
                     path, sections));
+  return 1;
 }
 
 // The unit cell: its edges a, b, c in world space, a along x and b in the plane z = 0, as crystallographers have it.
@@ -136,7 +141,7 @@ std::array<int, 3> axis_order(const std::string& path, const HeaderBytes& header
 
 // The lattice with its axes in the order x, y, z.
 Lattice lattice_of(const std::string& path, const HeaderBytes& header, const std::array<int, 3>& order,
-                   bool spacing_given) {
+                   std::uint64_t volumes, bool spacing_given) {
   const Mat3 cell = cell_edges(path, header, spacing_given);
   Lattice lattice;
   Vec3 start(0.0);
@@ -144,6 +149,7 @@ Lattice lattice_of(const std::string& path, const HeaderBytes& header, const std
     lattice.size[order.at(a)] = header.get<std::int32_t>(4 * a);
     start[order.at(a)] = header.get<std::int32_t>(16 + 4 * a);
   }
+  lattice.size[order[2]] /= int(volumes);
   for (int a = 0; a < 3; ++a) {
     auto intervals = header.get<std::int32_t>(28 + 4 * std::size_t(a));
     if (spacing_given && intervals == 0) intervals = 1;
@@ -187,7 +193,7 @@ bool is_mrc(const std::string& path) {
   }
 }
 
-/// \throw IoError unless the file holds as many voxels as its header says, as far as its size tells
+/// Of all volumes. \throw IoError unless an uncompressed file holds as many voxels as its header says
 detail::DataPlace data_place(const std::string& path, const HeaderBytes& header, ScalarType type) {
   const std::array<std::int64_t, 3> sizes = {header.get<std::int32_t>(0), header.get<std::int32_t>(4),
                                              header.get<std::int32_t>(8)};
@@ -201,7 +207,6 @@ detail::DataPlace data_place(const std::string& path, const HeaderBytes& header,
     throw IoError(fmt::format("{}: {}x{}x{} voxels behind an extended header of {} bytes need {} bytes, {} found", path,
                               sizes[0], sizes[1], sizes[2], extended, needed, found));
   (place.compressed ? place.skipped : place.offset) = begin;
-  detail::require_room(place, count);
   return place;
 }
 
@@ -209,8 +214,8 @@ detail::DataPlace data_place(const std::string& path, const HeaderBytes& header,
 /// Immutable, callable from many threads.
 class MrcReader final : public VolumeReader {
  public:
-  using Options = NoOptions;
-  explicit MrcReader(const Options& /*options*/) {}
+  using Options = detail::FrameOptions;
+  explicit MrcReader(const Options& options) : frame_(options.frame) {}
 
   [[nodiscard]] int claims(const std::string& source, const ReadOptions& /*options*/) const override {
     if (is_mrc(source)) return 2;
@@ -228,10 +233,12 @@ class MrcReader final : public VolumeReader {
       throw InvalidInput(fmt::format("{}: no MRC file: 'MAP' is missing at byte 208 of the header", source));
     const HeaderBytes header = ordered(std::move(bytes));
     const Mode mode = mode_of(source, header);
-    const detail::DataPlace place = data_place(source, header, mode.type);
-    require_one_volume(source, header, options.spacing.has_value());
+    detail::DataPlace place = data_place(source, header, mode.type);
+    const std::uint64_t volumes = volumes_of(source, header, options.spacing.has_value());
     const auto order = axis_order(source, header);
-    const Lattice lattice = lattice_of(source, header, order, options.spacing.has_value());
+    const Lattice lattice = lattice_of(source, header, order, volumes, options.spacing.has_value());
+    const auto what = fmt::format("a stack of {} volumes (ISPG {})", volumes, header.get<std::int32_t>(88));
+    place.frames = {volumes, lattice.count(), detail::wanted_frame(source, "mrc", frame_, volumes, what)};
     auto values = mode.halves ? detail::read_halves(place, lattice.count(), options, run)
                               : detail::read_values(place, lattice.count(), options, run);
     values.list = in_xyz_order(std::move(values.list), lattice, order);
@@ -240,6 +247,9 @@ class MrcReader final : public VolumeReader {
     if (!mode.remark.empty()) volume.remarks.push_back(mode.remark);
     return volume;
   }
+
+ private:
+  int frame_;
 };
 
 }  // namespace

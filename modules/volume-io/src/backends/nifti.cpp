@@ -11,8 +11,8 @@ namespace {
 /// threads.
 class NiftiReader final : public VolumeReader {
  public:
-  using Options = NoOptions;
-  explicit NiftiReader(const Options& /*options*/) {}
+  using Options = detail::FrameOptions;
+  explicit NiftiReader(const Options& options) : frame_(options.frame) {}
 
   [[nodiscard]] int claims(const std::string& source, const ReadOptions& /*options*/) const override {
     if (detail::is_nifti(source)) return 2;
@@ -22,13 +22,16 @@ class NiftiReader final : public VolumeReader {
 
   [[nodiscard]] StoredVolume read(const std::string& source, const ReadOptions& options,
                                   const Run& run) const override {
-    const detail::NiftiHeader header = detail::read_nifti_header(source);
+    const detail::NiftiHeader header = detail::read_nifti_header(source, frame_);
     auto values = detail::read_values(header.data, header.lattice.count(), options, run);
     StoredVolume volume = detail::make_volume(source, header.lattice, std::move(values),
                                               detail::voxel_type(header.data), "left-posterior-superior", options);
     if (!header.remark.empty()) volume.remarks.push_back(header.remark);
     return volume;
   }
+
+ private:
+  int frame_;
 };
 
 }  // namespace

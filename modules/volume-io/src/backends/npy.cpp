@@ -96,8 +96,9 @@ void leave_out_single(std::vector<std::int64_t>& sizes) {
   }
 }
 
-/// The sizes along x, y and z: the last index is the fastest in C's order, the first in Fortran's.
-std::array<std::int64_t, 3> sizes_of(const std::string& path, const std::string& shape, bool fortran_order) {
+/// The sizes along x, y and z, and of several volumes how many: the last index is the fastest in C's order, the first
+/// in Fortran's.
+std::vector<std::int64_t> sizes_of(const std::string& path, const std::string& shape, bool fortran_order) {
   std::vector<std::int64_t> sizes;
   const std::regex number("[0-9]+");
   for (std::sregex_iterator it(shape.begin(), shape.end(), number), end; it != end; ++it) {
@@ -107,19 +108,20 @@ std::array<std::int64_t, 3> sizes_of(const std::string& path, const std::string&
     sizes.push_back(read.ec == std::errc() ? size : -1);
   }
   leave_out_single(sizes);
-  if (sizes.size() != 3)
+  if (sizes.size() != 3 && sizes.size() != 4)
     throw InvalidInput(
-        fmt::format("{}: .npy of shape ({}): an array of three axes is needed, beside those of one sample", path,
-                    detail::excerpt(shape)));
+        fmt::format("{}: .npy of shape ({}): an array of three axes is needed, or of four for several volumes, beside "
+                    "those of one sample",
+                    path, detail::excerpt(shape)));
   if (!fortran_order) std::reverse(sizes.begin(), sizes.end());
-  return {sizes[0], sizes[1], sizes[2]};
+  return sizes;
 }
 
 /// Arrays of NumPy (numpy.lib.format, "The .npy format"). Immutable, callable from many threads.
 class NpyReader final : public VolumeReader {
  public:
-  using Options = NoOptions;
-  explicit NpyReader(const Options& /*options*/) {}
+  using Options = detail::FrameOptions;
+  explicit NpyReader(const Options& options) : frame_(options.frame) {}
 
   [[nodiscard]] int claims(const std::string& source, const ReadOptions& /*options*/) const override {
     if (detail::first_bytes(source, kMark.size()) == kMark) return 2;
@@ -138,14 +140,23 @@ class NpyReader final : public VolumeReader {
     const NpyType type = type_of(source, value_of(source, header.text, "descr", "['\"]([^'\"]*)['\"]"));
     place.layout = type.layout;
     const bool fortran_order = value_of(source, header.text, "fortran_order", "(True|False)") == "True";
-    const auto sizes = sizes_of(source, value_of(source, header.text, "shape", "\\(([0-9, ]*)\\)"), fortran_order);
-    const std::uint64_t count = detail::checked_count(source, sizes, bytes_per_scalar(place.layout.type));
+    const std::string shape = value_of(source, header.text, "shape", "\\(([0-9, ]*)\\)");
+    const auto sizes = sizes_of(source, shape, fortran_order);
+    const std::uint64_t all = detail::checked_count(source, sizes, bytes_per_scalar(place.layout.type));
+    const std::uint64_t volumes = sizes.size() > 3 ? std::uint64_t(sizes[3]) : 1;
+    const std::uint64_t count = all / volumes;
+    const auto what = fmt::format("an array of shape ({}), its {} axis of {} volumes", detail::excerpt(shape),
+                                  fortran_order ? "last" : "first", volumes);
+    place.frames = {volumes, count, detail::wanted_frame(source, "npy", frame_, volumes, what)};
     auto values =
         type.halves ? detail::read_halves(place, count, options, run) : detail::read_values(place, count, options, run);
     const Lattice lattice{.size = Index3(int(sizes[0]), int(sizes[1]), int(sizes[2])), .frame = {}};
     return detail::make_volume(source, lattice, std::move(values),
                                type.halves ? ScalarType::kFloat32 : place.layout.type, "3D-right-handed", options);
   }
+
+ private:
+  int frame_;
 };
 
 }  // namespace

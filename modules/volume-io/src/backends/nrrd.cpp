@@ -9,6 +9,8 @@
 
 #include <algorithm>
 #include <array>
+#include <optional>
+#include <vector>
 
 namespace isolux {
 namespace {
@@ -48,6 +50,36 @@ bool is_of_values(std::string_view kind) {
          kind.ends_with("-tensor");
 }
 bool is_of_time(const detail::NrrdAxis& axis) { return axis.kind == "time"; }
+
+/// The axis of several samples along which volumes lie, if there is one such axis and space besides.
+std::optional<std::size_t> axis_of_volumes(const detail::NrrdHeader& header) {
+  std::vector<std::size_t> found;
+  int of_space = 0;
+  for (std::size_t a = 0; a < header.axes.size(); ++a) {
+    const detail::NrrdAxis& axis = header.axes[a];
+    const bool is_space = !is_of_values(axis.kind) && !is_of_time(axis) && (!header.has_directions || axis.direction);
+    if (is_space) ++of_space;
+    if (axis.size > 1 && !is_space) found.push_back(a);
+  }
+  return found.size() == 1 && of_space >= 3 ? std::optional(found[0]) : std::nullopt;
+}
+
+/// Which of several volumes is read; of `header` the axis along which they lie then has one sample.
+detail::Frames take_frame(detail::NrrdHeader& header, int frame) {
+  const auto axis = axis_of_volumes(header);
+  detail::Frames frames;
+  std::string what;
+  if (axis) {
+    frames.together = 1;
+    for (std::size_t a = 0; a < *axis; ++a) frames.together *= std::uint64_t(header.axes[a].size);
+    frames.count = std::uint64_t(header.axes[*axis].size);
+    what = fmt::format("axis {} of {} has {} samples of the kind '{}'", *axis + 1, header.axes.size(), frames.count,
+                       header.axes[*axis].kind);
+    header.axes[*axis].size = 1;
+  }
+  frames.wanted = detail::wanted_frame(header.path, "nrrd", frame, frames.count, what);
+  return frames;
+}
 
 // Axes of several samples that are none of space would be taken for it.
 void require_space(const detail::NrrdHeader& header) {
@@ -95,8 +127,8 @@ std::vector<detail::NrrdAxis> spatial_axes(const detail::NrrdHeader& header) {
 /// threads.
 class NrrdReader final : public VolumeReader {
  public:
-  using Options = NoOptions;
-  explicit NrrdReader(const Options& /*options*/) {}
+  using Options = detail::FrameOptions;
+  explicit NrrdReader(const Options& options) : frame_(options.frame) {}
 
   [[nodiscard]] int claims(const std::string& source, const ReadOptions& /*options*/) const override {
     if (detail::first_bytes(source, 7) == "NRRD000") return 2;
@@ -106,10 +138,13 @@ class NrrdReader final : public VolumeReader {
   [[nodiscard]] StoredVolume read(const std::string& source, const ReadOptions& options,
                                   const Run& run) const override {
     const detail::NrrdHeader header = detail::read_nrrd_header(source, options);
-    const auto axes = spatial_axes(header);
-    detail::NrrdFrame frame = detail::nrrd_frame(header, axes);
-    StoredVolume volume = detail::make_volume(source, frame.lattice, detail::read_nrrd_values(header, options, run),
-                                              header.layout.type, std::move(frame.space), options);
+    detail::NrrdHeader of_one = header;
+    const detail::Frames frames = take_frame(of_one, frame_);
+    const auto axes = spatial_axes(of_one);
+    detail::NrrdFrame frame = detail::nrrd_frame(of_one, axes);
+    StoredVolume volume =
+        detail::make_volume(source, frame.lattice, detail::read_nrrd_values(header, frames, options, run),
+                            header.layout.type, std::move(frame.space), options);
     if (const auto time = std::find_if(axes.begin(), axes.end(), is_of_time); time != axes.end() && time->size > 1)
       volume.remarks.push_back(fmt::format("{}: its axis of the kind 'time' is taken as one of space", source));
     return volume;
@@ -118,6 +153,9 @@ class NrrdReader final : public VolumeReader {
   [[nodiscard]] std::vector<std::string> files(const std::string& source, const ReadOptions& options) const override {
     return {source, detail::read_nrrd_header(source, options).data_file};
   }
+
+ private:
+  int frame_;
 };
 
 }  // namespace
