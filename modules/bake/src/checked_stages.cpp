@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 #include <isolux/core/error.h>
 
+#include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <string>
 #include <utility>
@@ -38,11 +40,23 @@ class CheckedTracer final : public FlatTracer {
     const SampleSet& samples = result.samples;
     const bool is_one_each = (samples.channels == 1 || samples.channels == 3) && samples.size() == count &&
                              samples.radiance.size() == count * std::size_t(samples.channels) &&
-                             samples.variance.size() == count && (result.rays.empty() || result.rays.size() == count);
-    if (is_one_each) return result;
-    throw InvalidInput(
-        fmt::format("tracer {}: {} sites, of which it gave {} with {} radiances of {} channels and {} variances", name_,
-                    count, samples.size(), samples.radiance.size(), samples.channels, samples.variance.size()));
+                             samples.variance.size() == count && (result.rays.empty() || result.rays.size() == count) &&
+                             (result.cut.empty() || result.cut.size() == count);
+    if (!is_one_each)
+      throw InvalidInput(fmt::format(
+          "tracer {}: {} sites, of which it gave {} with {} radiances of {} channels, {} variances, {} numbers of rays "
+          "and {} of paths cut off",
+          name_, count, samples.size(), samples.radiance.size(), samples.channels, samples.variance.size(),
+          result.rays.size(), result.cut.size()));
+    const auto bad =
+        std::find_if(samples.radiance.begin(), samples.radiance.end(), [](float e) { return !std::isfinite(e); });
+    if (bad != samples.radiance.end())
+      throw InvalidInput(
+          fmt::format("tracer {}: sample {}: its radiance is {}; it must be finite; the scene's radiance, irradiance "
+                      "or emission may "
+                      "be too large for floats",
+                      name_, std::size_t(bad - samples.radiance.begin()) / std::size_t(samples.channels), *bad));
+    return result;
   }
 
  private:

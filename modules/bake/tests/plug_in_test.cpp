@@ -42,6 +42,7 @@ class SpoiltTracer final : public FlatTracer {
                                   const isolux::Run& run) const override {
     TraceResult result = tracers().create("wide")->trace(volume, scene, std::move(sites), settings, run);
     spoiling<SampleSet>()(result.samples);
+    spoiling<TraceResult>()(result);
     return result;
   }
 };
@@ -64,6 +65,7 @@ std::string error_of(std::function<void(What&)> spoil,
                      const std::function<void(const BakeSettings&, const Stages&)>& light) {
   spoiling<Sites>() = [](Sites&) {};
   spoiling<SampleSet>() = [](SampleSet&) {};
+  spoiling<TraceResult>() = [](TraceResult&) {};
   spoiling<ResampledGrid>() = [](ResampledGrid&) {};
   spoiling<What>() = std::move(spoil);
   Stages stages = builtin_stages();
@@ -113,6 +115,13 @@ TEST(PlugIns, TracersHaveToLightEverySite) {
               HasSubstr("tracer mine: "));
   EXPECT_THAT(error_of<SampleSet>([](SampleSet& samples) { samples.radiance.pop_back(); }), HasSubstr("tracer mine: "));
   EXPECT_THAT(error_of<SampleSet>([](SampleSet& samples) { samples.channels = 0; }), HasSubstr("tracer mine: "));
+  EXPECT_THAT(error_of<TraceResult>([](TraceResult& result) { result.rays.resize(3); }),
+              HasSubstr("3 numbers of rays"));
+  EXPECT_THAT(error_of<TraceResult>([](TraceResult& result) { result.cut.resize(3); }),
+              HasSubstr("3 of paths cut off"));
+  for (const float bad : {std::nanf(""), INFINITY})
+    EXPECT_THAT(error_of<SampleSet>([&](SampleSet& samples) { samples.radiance[7] = bad; }),
+                HasSubstr("tracer mine: sample 7: its radiance is "));
 }
 
 TEST(PlugIns, TracersHaveToLightTheTexelsThatAreChosenFrom) {

@@ -3,6 +3,9 @@
 #include <isolux/core/error.h>
 #include <isolux/core/registry.h>
 
+#include <algorithm>
+#include <set>
+
 namespace isolux::detail {
 namespace {
 
@@ -13,6 +16,14 @@ namespace {
   throw InvalidInput(fmt::format("no {} {}{}; there are {}", stage, what,
                                  near.empty() ? "" : fmt::format(" (did you mean '{}'?)", near),
                                  fmt::join(there_are, ", ")));
+}
+
+constexpr std::string_view kPlainNames = "names are of letters, digits, _ and -";
+
+bool is_plain(std::string_view name) {
+  return !name.empty() && std::all_of(name.begin(), name.end(), [](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '-';
+  });
 }
 
 }  // namespace
@@ -38,10 +49,18 @@ std::size_t find_listed(std::string_view stage, std::string_view name, std::span
   refuse(stage, name, listed);
 }
 
-void require_new_backend(std::string_view stage, std::string_view name, std::span<const BackendInfo> infos) {
-  if (name.empty()) throw InvalidInput(fmt::format("a {} needs a name; '' is the default's", stage));
-  for (const auto& info : infos) {
-    if (info.name == name) throw InvalidInput(fmt::format("there already is a {} called '{}'", stage, name));
+void require_new_backend(std::string_view stage, const BackendInfo& info, std::span<const BackendInfo> infos) {
+  if (info.name.empty()) throw InvalidInput(fmt::format("a {} needs a name; '' is the default's", stage));
+  if (!is_plain(info.name)) throw InvalidInput(fmt::format("a {} called '{}': {}", stage, info.name, kPlainNames));
+  for (const auto& other : infos) {
+    if (other.name == info.name) throw InvalidInput(fmt::format("there already is a {} called '{}'", stage, info.name));
+  }
+  std::set<std::string_view> options;
+  for (const auto& option : info.options) {
+    if (!is_plain(option.name))
+      throw InvalidInput(fmt::format("{} {}: an option called '{}': {}", stage, info.name, option.name, kPlainNames));
+    if (!options.insert(option.name).second)
+      throw InvalidInput(fmt::format("{} {}: two options called '{}'", stage, info.name, option.name));
   }
 }
 

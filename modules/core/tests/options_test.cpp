@@ -98,6 +98,42 @@ TEST(Registry, RefusesASecondBackendOfOneName) {
   EXPECT_THROW((r.add<Plain>("mixer", "again")), InvalidInput);
 }
 
+/// With the options of the test that is run.
+class Named final : public Plain {
+ public:
+  struct Options {
+    static std::vector<std::string>& names() {
+      static std::vector<std::string> list;
+      return list;
+    }
+    int value = 0;
+    void describe(OptionVisitor& option) {
+      for (const std::string& name : names()) option(name, value, {});
+    }
+  };
+  explicit Named(const Options& /*options*/) : Plain({}) {}
+};
+
+// Else nobody could say them on a command line, or which of two is meant.
+TEST(Registry, RefusesNamesThatCannotBeSaid) {
+  auto r = registry();
+  for (const std::string name : {"", "a b", "a.b", "a=b", "a\n", "\xC3\xBC", "a,b"}) {
+    Named::Options::names() = {};
+    EXPECT_THROW(r.add<Named>(name, ""), InvalidInput) << name;
+    EXPECT_THROW(r.add_unavailable(name, "why"), InvalidInput) << name;
+    Named::Options::names() = {"fine", name};
+    EXPECT_THAT([&] { r.add<Named>("named", ""); },
+                ThrowsMessage<InvalidInput>(HasSubstr("filter named: an option called '")));
+  }
+  Named::Options::names() = {"one", "two", "one"};
+  EXPECT_THAT([&] { r.add<Named>("named", ""); },
+              ThrowsMessage<InvalidInput>(HasSubstr("filter named: two options called 'one'")));
+  EXPECT_EQ(r.backends().size(), 3u);
+  Named::Options::names() = {"one", "Two_2", "3-d"};
+  r.add<Named>("a_B-9", "");
+  EXPECT_EQ(r.info("a_B-9").options.size(), 3u);
+}
+
 TEST(Registry, ListsOptionsWithRangesAndDefaults) {
   const Registry<Stage> r = registry();
   const BackendInfo& mixer = r.info("mixer");

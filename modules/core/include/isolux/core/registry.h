@@ -28,8 +28,8 @@ namespace detail {
 /// Index of `name`, even if this build lacks it. \throw InvalidInput naming those that are listed.
 [[nodiscard]] std::size_t find_listed(std::string_view stage, std::string_view name,
                                       std::span<const BackendInfo> infos);
-/// \throw InvalidInput if `name` is there or empty.
-void require_new_backend(std::string_view stage, std::string_view name, std::span<const BackendInfo> infos);
+/// \throw InvalidInput for a name that is there, or names that cannot be written as NAME.key=value.
+void require_new_backend(std::string_view stage, const BackendInfo& info, std::span<const BackendInfo> infos);
 }  // namespace detail
 
 /// The backends of one stage by name. A value: fill one from the module's catalogue, add your own, pass it on. `Stage`
@@ -39,7 +39,8 @@ template <class Stage>
 class Registry {
  public:
   /// Adds a backend: a class derived from Stage with a nested `Options` (see options.h) and a constructor taking it.
-  /// \throw InvalidInput if the name is taken or empty.
+  /// \throw InvalidInput if the name is taken, two options have one, or one of these is not of letters, digits, _ and
+  /// -.
   template <std::derived_from<Stage> Backend>
   void add(std::string name, std::string help) {
     std::string owner = std::string(Stage::kStage) + " " + name;
@@ -82,7 +83,7 @@ class Registry {
   using Maker = std::function<std::unique_ptr<Stage>(const Settings&)>;
 
   void insert(BackendInfo info, Maker maker) {
-    detail::require_new_backend(Stage::kStage, info.name, infos_);
+    detail::require_new_backend(Stage::kStage, info, infos_);
     makers_.reserve(makers_.size() + 1);  // or a name could stay without a maker
     infos_.push_back(std::move(info));
     makers_.push_back(std::move(maker));
