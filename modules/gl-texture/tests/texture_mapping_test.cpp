@@ -86,6 +86,23 @@ TEST(TextureMapping, ForgivesTheRoundingOfFileHeadersButNoOtherAxes) {
   EXPECT_THROW(static_cast<void>(texture_mapping(texels, volume)), InvalidInput);
 }
 
+// By a thousandth of a texel at the box's far end.
+TEST(TextureMapping, ForgivesNoShearThatCanBeSeen) {
+  const Lattice volume = oblique_volume({4, 9, 25});
+  for (int a = 0; a < 3; ++a) {
+    for (int b = 0; b < 3; ++b) {
+      if (a == b) continue;
+      const auto sheared = [&](double drift) {
+        Lattice texels = voxel_lattice(volume);
+        texels.frame.axes[b] += drift / (volume.size[b] - 1) * texels.frame.axes[a];
+        return texels;
+      };
+      EXPECT_NO_THROW(static_cast<void>(texture_mapping(sheared(0.95e-3), volume))) << a << b;
+      EXPECT_THROW(static_cast<void>(texture_mapping(sheared(1.05e-3), volume)), InvalidInput) << a << b;
+    }
+  }
+}
+
 TEST(TextureMapping, RefusesAVolumeThatIsFlat) {
   const Lattice volume = oblique_volume({4, 1, 6});
   EXPECT_THROW(static_cast<void>(texture_mapping(volume, volume)), InvalidInput);

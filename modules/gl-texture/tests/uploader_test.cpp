@@ -220,13 +220,23 @@ INSTANTIATE_TEST_SUITE_P(EveryBackend, Uploader, testing::ValuesIn(cases()), [](
 TEST(Texture3D, MovesItsNameAndDeletesItOnce) {
   const test::EglContext context;
   if (!context) GTEST_SKIP() << context.why();
-  const IlluminationGrid light(unit_spacing({2, 2, 2}), 1);
-  Texture3D first = uploaders().create()->upload(light, light.lattice);
+  IlluminationGrid light(unit_spacing({2, 3, 4}), 3);
+  std::fill(light.values.begin(), light.values.end(), 7.0f);
+  Texture3D first = uploaders().create("whole", {{"format", "unorm8"}})->upload(light, light.lattice);
   const unsigned int name = first.name();
+  const auto expect_first = [&](const Texture3D& texture) {
+    EXPECT_EQ(texture.name(), name);
+    EXPECT_EQ(texture.size(), Index3(2, 3, 4));
+    EXPECT_EQ(texture.channels(), 3);
+    EXPECT_EQ(texture.gain(), 7.0);
+    EXPECT_EQ(texture.scale().z, 0.75);
+    EXPECT_EQ(texture.bytes(), 72u);
+  };
   Texture3D second(std::move(first));
-  EXPECT_EQ(second.name(), name);
+  expect_first(second);
   Texture3D third;
   third = std::move(second);
+  expect_first(third);
   EXPECT_EQ(glIsTexture(name), GL_TRUE);
   third = Texture3D();
   EXPECT_EQ(glIsTexture(name), GL_FALSE);
