@@ -1,29 +1,28 @@
 #include "startable_threads.h"
 
+#include <dirent.h>
 #include <isolux/core/machine_memory.h>
 #include <tbb/global_control.h>
 
 #include <algorithm>
 #include <chrono>
 #include <exception>
-#include <filesystem>
 #include <latch>
+#include <memory>
 #include <mutex>
 #include <optional>
-#include <system_error>
 #include <thread>
 #include <vector>
 
 namespace isolux::detail {
 namespace {
 
+// Not by std::filesystem, which ends the program where memory has ended.
 std::size_t threads_now() {
-  namespace fs = std::filesystem;
-  std::error_code error;
+  const auto close = [](DIR* folder) { closedir(folder); };
+  const std::unique_ptr<DIR, decltype(close)> tasks(opendir("/proc/self/task"), close);
   std::size_t count = 0;
-  for (fs::directory_iterator task("/proc/self/task", error); !error && task != fs::directory_iterator();
-       task.increment(error))
-    ++count;
+  while (tasks && readdir(tasks.get()) != nullptr) ++count;
   return count;
 }
 
