@@ -53,8 +53,7 @@ class CheckedTracer final : public FlatTracer {
     if (bad != samples.radiance.end())
       throw InvalidInput(
           fmt::format("tracer {}: sample {}: its radiance is {}; it must be finite; the scene's radiance, irradiance "
-                      "or emission may "
-                      "be too large for floats",
+                      "or emission may be too large for floats",
                       name_, std::size_t(bad - samples.radiance.begin()) / std::size_t(samples.channels), *bad));
     return result;
   }

@@ -39,8 +39,7 @@ template <class Stage>
 class Registry {
  public:
   /// Adds a backend: a class derived from Stage with a nested `Options` (see options.h) and a constructor taking it.
-  /// \throw InvalidInput if the name is taken, two options have one, or one of these is not of letters, digits, _ and
-  /// -.
+  /// \throw InvalidInput if the name is taken, two options have one, or a name is not of letters, digits, _ and -.
   template <std::derived_from<Stage> Backend>
   void add(std::string name, std::string help) {
     std::string owner = std::string(Stage::kStage) + " " + name;
