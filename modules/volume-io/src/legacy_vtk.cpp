@@ -6,6 +6,7 @@
 #include "plain_text.h"
 #include "vtk_extent.h"
 #include "vtk_lines.h"
+#include "vtk_words.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -13,10 +14,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
-#include <charconv>
-#include <cmath>
-#include <map>
 #include <optional>
 
 namespace isolux::detail {
@@ -26,63 +23,6 @@ constexpr std::string_view kMagic = "# vtk DataFile Version";
 constexpr std::uint64_t kMostValues = std::uint64_t(1) << 48;
 
 using Words = std::vector<std::string>;
-
-std::optional<ScalarType> scalar_type(const std::string& type) {
-  // A vtkIdType has eight bytes in memory, and four in what VTK writes and reads.
-  static const std::map<std::string, ScalarType> types = {{"char", ScalarType::kInt8},
-                                                          {"signed_char", ScalarType::kInt8},
-                                                          {"unsigned_char", ScalarType::kUint8},
-                                                          {"short", ScalarType::kInt16},
-                                                          {"unsigned_short", ScalarType::kUint16},
-                                                          {"int", ScalarType::kInt32},
-                                                          {"vtkidtype", ScalarType::kInt32},
-                                                          {"unsigned_int", ScalarType::kUint32},
-                                                          {"long", ScalarType::kInt64},
-                                                          {"unsigned_long", ScalarType::kUint64},
-                                                          {"long_long", ScalarType::kInt64},
-                                                          {"unsigned_long_long", ScalarType::kUint64},
-                                                          {"vtktypeint64", ScalarType::kInt64},
-                                                          {"vtktypeuint64", ScalarType::kUint64},
-                                                          {"float", ScalarType::kFloat32},
-                                                          {"double", ScalarType::kFloat64}};
-  const auto it = types.find(lower_case(type));
-  return it == types.end() ? std::nullopt : std::optional(it->second);
-}
-
-/// A name as VTK's writer coded it, with %20 for a blank.
-std::string decoded(const std::string& name) {
-  std::string text;
-  for (std::size_t i = 0; i < name.size(); ++i) {
-    unsigned code = 0;
-    if (name[i] == '%' && i + 2 < name.size() &&
-        std::from_chars(&name[i] + 1, &name[i] + 3, code, 16).ptr == &name[i] + 3) {
-      text += char(code);
-      i += 2;
-    } else {
-      text += name[i];
-    }
-  }
-  return text;
-}
-
-/// What one keyword says of an array: its role, and where its line has the numbers of values a tuple and the type.
-struct Attribute {
-  const char* keyword;
-  VtkRole role;
-  std::uint64_t components;    ///< a tuple, if no word says it
-  std::size_t component_word;  ///< 0: none
-  std::size_t type_word;       ///< 0: bytes, and as text fractions
-};
-constexpr std::array<Attribute, 10> kAttributes{{{"scalars", VtkRole::kScalars, 1, 3, 2},
-                                                 {"color_scalars", VtkRole::kScalars, 0, 2, 0},
-                                                 {"vectors", VtkRole::kOther, 3, 0, 2},
-                                                 {"normals", VtkRole::kOther, 3, 0, 2},
-                                                 {"tensors", VtkRole::kOther, 9, 0, 2},
-                                                 {"tensors6", VtkRole::kOther, 6, 0, 2},
-                                                 {"texture_coordinates", VtkRole::kOther, 0, 2, 3},
-                                                 {"edge_flags", VtkRole::kOther, 1, 0, 2},
-                                                 {"global_ids", VtkRole::kIds, 1, 0, 2},
-                                                 {"pedigree_ids", VtkRole::kIds, 1, 0, 2}}};
 
 /// Follows a file from array to array.
 class Walk {
@@ -107,7 +47,7 @@ class Walk {
   LegacyVtk place();
   void part(const Words& words);
   bool geometry(const std::string& key, const Words& words);
-  void attribute(const Attribute& attribute, const Words& words);
+  void attribute(const VtkAttribute& attribute, const Words& words);
   void field(const Words& words);
   void metadata();
   void pass(const std::string& name, const std::string& type, std::uint64_t components, std::uint64_t tuples);
@@ -174,10 +114,9 @@ void Walk::part(const Words& words) {
   if (geometry(key, words)) return;
   if (key == "metadata") return metadata();
   if (key == "field") return field(words);
-  if (key == "lookup_table") return pass(decoded(words.back()), "unsigned_char", 4, whole(words, 2));
-  const auto* const found =
-      std::find_if(kAttributes.begin(), kAttributes.end(), [&](const auto& known) { return key == known.keyword; });
-  if (found == kAttributes.end()) throw wrong(words, "this is no part of DATASET STRUCTURED_POINTS");
+  if (key == "lookup_table") return pass(vtk_decoded(words.back()), "unsigned_char", 4, whole(words, 2));
+  const VtkAttribute* const found = find_vtk_attribute(key);
+  if (found == nullptr) throw wrong(words, "this is no part of DATASET STRUCTURED_POINTS");
   attribute(*found, words);
 }
 
@@ -204,7 +143,7 @@ bool Walk::geometry(const std::string& key, const Words& words) {
   return true;
 }
 
-void Walk::attribute(const Attribute& attribute, const Words& words) {
+void Walk::attribute(const VtkAttribute& attribute, const Words& words) {
   if (!of_cells_) throw wrong(words, "it stands without POINT_DATA or CELL_DATA before it");
   const bool scalars = attribute.role == VtkRole::kScalars && attribute.type_word != 0;
   const std::size_t last = std::max(attribute.type_word, attribute.component_word);
@@ -219,7 +158,7 @@ void Walk::attribute(const Attribute& attribute, const Words& words) {
     if (table.empty() || lower_case(table.front()) != "lookup_table")
       throw wrong(words, "SCALARS have a LOOKUP_TABLE line behind theirs");
   }
-  const VtkArrayInfo info{.name = decoded(words[1]), .of_cells = *of_cells_, .role = attribute.role};
+  const VtkArrayInfo info{.name = vtk_decoded(words[1]), .of_cells = *of_cells_, .role = attribute.role};
   const bool colours = attribute.type_word == 0;
   add(info, colours ? "unsigned_char" : words[attribute.type_word], components, count_, colours);
 }
@@ -229,17 +168,17 @@ void Walk::field(const Words& words) {
   const std::uint64_t arrays = whole(words, 2);
   for (std::uint64_t i = 0; i < arrays; ++i) {
     Words line = lines_.words();
-    if (!line.empty() && lower_case(line.front()) == "metadata") {
+    if (line.size() == 1 && lower_case(line.front()) == "metadata") {
       metadata();
       line = lines_.words();
     }
     if (line.empty())
       throw IoError(fmt::format("{}: VTK: {} arrays of a FIELD expected, {} found", file_.file, arrays, i));
-    if (lower_case(line.front()) == "null_array") continue;
+    if (line.size() == 1 && lower_case(line.front()) == "null_array") continue;
     if (line.size() != 4) throw wrong(line, "an array of a FIELD has a name, components, tuples and a type");
     const std::uint64_t components = whole(line, 1);
     const std::uint64_t tuples = whole(line, 2);
-    const VtkArrayInfo info{.name = decoded(line[0]), .of_cells = of_cells_.value_or(false)};
+    const VtkArrayInfo info{.name = vtk_decoded(line[0]), .of_cells = of_cells_.value_or(false)};
     if (of_cells_)
       add(info, line[3], components, tuples, false);
     else
@@ -249,7 +188,7 @@ void Walk::field(const Words& words) {
 
 void Walk::add(VtkArrayInfo info, const std::string& type, std::uint64_t components, std::uint64_t tuples,
                bool colours) {
-  const auto known = scalar_type(type);
+  const auto known = vtk_scalar_type(type);
   if (components != 1) info.peculiarity += fmt::format(" ({} components)", components);
   if (!known) info.peculiarity += fmt::format(" (type '{}')", excerpt(type));
   info.plain = components == 1 && known;
@@ -275,7 +214,7 @@ void Walk::pass(const std::string& name, const std::string& type, std::uint64_t 
     throw InvalidInput(fmt::format("{}: VTK array '{}': {} components of {} are more values than a file holds",
                                    file_.file, excerpt(name), components, tuples));
   const std::uint64_t values = components * tuples;
-  const auto known = scalar_type(type);
+  const auto known = vtk_scalar_type(type);
   const std::string kind = lower_case(type);
   bool passed = false;
   if (kind == "string" || kind == "utf8_string") {

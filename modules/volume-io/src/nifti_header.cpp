@@ -290,8 +290,7 @@ NiftiHeader read_nifti_header(const std::string& path, int frame) {
   }
   const std::uint64_t count = checked_count(path, sizes, width);
   const std::uint64_t volumes = checked_count(path, all_sizes, width) / count;
-  const auto what = all_sizes.size() > 4 ? fmt::format("{} volumes along axes 4 to {}", volumes, all_sizes.size())
-                                         : fmt::format("{} volumes along axis 4", volumes);
+  const auto what = fmt::format("{} volumes along the axes behind the third", volumes);
   header.data.frames = {volumes, count, wanted_frame(path, "nifti", frame, volumes, what)};
   require_room(header.data, count);
   header.lattice.size = {int(sizes[0]), int(sizes[1]), int(sizes[2])};

@@ -275,7 +275,8 @@ TEST_F(Nifti, IsRefusedAsATimeSeries) {
   test::put<std::int16_t>(bytes, 40, 4);
   test::put<std::int16_t>(bytes, 46, 1);
   test::put<std::int16_t>(bytes, 48, 2);
-  EXPECT_THAT(refused("a.nii", bytes), HasSubstr("a.nii: 2 volumes along axis 4: --set-reader nifti.frame=K"));
+  EXPECT_THAT(refused("a.nii", bytes),
+              HasSubstr("a.nii: 2 volumes along the axes behind the third: --set-reader nifti.frame=K"));
   for (const std::int16_t size : {0, -5}) {
     test::put<std::int16_t>(bytes, 48, size);
     EXPECT_THAT(refused("a.nii", bytes), HasSubstr(fmt::format("sizes 3 2 1 {}", size)));

@@ -11,8 +11,8 @@ using ::testing::IsEmpty;
 // Files as VTK 9.1 writes them of several arrays.
 class VtkArrays : public test::RampFile {
  protected:
-  static std::string start(bool text, const std::string& version = "5.1") {
-    return "# vtk DataFile Version " + version + "\nvtk output\n" + (text ? "ASCII" : "BINARY") +
+  static std::string start(bool text) {
+    return std::string("# vtk DataFile Version 5.1\nvtk output\n") + (text ? "ASCII" : "BINARY") +
            "\nDATASET STRUCTURED_POINTS\n";
   }
   static std::string geometry() { return "DIMENSIONS 3 2 2\nSPACING 0.5 2 4\nORIGIN 10 20 30\n"; }
@@ -74,6 +74,18 @@ TEST_F(VtkArrays, OfTheWholeDataSetAreNoVolumes) {
     const Volume volume = read(start(text) + fields + geometry() + "POINT_DATA 12\n" + scalars(text));
     expect_ramp(volume);
     EXPECT_THAT(volume.remarks, IsEmpty());
+  }
+}
+
+TEST_F(VtkArrays, MayBeCalledWhatStandsBetweenThem) {
+  for (const bool text : {false, true}) {
+    for (const std::string name : {"METADATA", "NULL_ARRAY", "SCALARS"}) {
+      const std::string file = start(text) + geometry() + "POINT_DATA 12\nFIELD FieldData 2\n" + name +
+                               " 1 12 float\n" + numbers<float>(text, 12, 7) + "f 1 12 float\n" +
+                               numbers<float>(text, 12);
+      EXPECT_EQ(read(file, name).values.values()[0], 7.0f) << name;
+      EXPECT_EQ(read(file, "f").values.values()[11], 11.0f) << name;
+    }
   }
 }
 
